@@ -1,0 +1,56 @@
+//! What is known about a point where a ray met a surface.
+
+use glam::{Vec2, Vec3A};
+
+use super::offset::offset_origin;
+use super::ray::Ray;
+
+/// A point of a surface, seen from `wo`.
+///
+/// Invariant: `wo` points away from the surface; `n_g` is the geometric normal of the front side
+/// (counter-clockwise, or outward) whichever side is seen; `n_s` lies in its hemisphere.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceInteraction {
+    /// Position.
+    pub p: Vec3A,
+    /// Bound on the absolute error of each coordinate of `p`.
+    pub p_error: Vec3A,
+    /// Unit geometric normal.
+    pub n_g: Vec3A,
+    /// Unit shading normal.
+    pub n_s: Vec3A,
+    /// Texture coordinates; v = 0 at the bottom of an image.
+    pub uv: Vec2,
+    /// Unit direction the ray came from.
+    pub wo: Vec3A,
+    /// Distance along the ray.
+    pub t: f32,
+    /// Index into the scene's materials.
+    pub material: u32,
+    /// Index into the scene's lights where the surface emits.
+    pub light: Option<u32>,
+    /// Index of the triangle or sphere in the geometry.
+    pub prim: u32,
+}
+
+impl SurfaceInteraction {
+    /// A ray that leaves in the unit direction `d` without meeting this surface again at its
+    /// origin.
+    #[inline]
+    pub fn spawn_ray(&self, d: Vec3A) -> Ray {
+        Ray::new(offset_origin(self.p, self.p_error, self.n_g, d), d)
+    }
+
+    /// A ray to `target`, a point that is moved off its own surface already; it ends short of it.
+    #[inline]
+    pub fn spawn_ray_to(&self, target: Vec3A) -> Ray {
+        let o = offset_origin(self.p, self.p_error, self.n_g, target - self.p);
+        let to = target - o;
+        let t = to.length();
+        Ray { o, d: to / t, t_max: t * (1.0 - SHADOW_SHORTENING) }
+    }
+}
+
+/// Relative shortening of a ray between two points: covers the rounding of its direction and
+/// length, a few operations of γ₃ each.
+const SHADOW_SHORTENING: f32 = 8.0 * f32::EPSILON;

@@ -1,0 +1,28 @@
+//! A half line.
+
+use glam::Vec3A;
+
+/// A ray from `o` along the unit vector `d`, valid for distances in (0, `t_max`).
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Origin. Secondary rays start outside the error box of their surface, so 0 is no hit.
+    pub o: Vec3A,
+    /// Unit direction.
+    pub d: Vec3A,
+    /// Largest distance of interest, exclusive; infinite for closest-hit queries.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// A ray without end.
+    #[inline]
+    pub fn new(o: Vec3A, d: Vec3A) -> Self {
+        Self { o, d, t_max: f32::INFINITY }
+    }
+
+    /// The point at distance `t`.
+    #[inline]
+    pub fn at(&self, t: f32) -> Vec3A {
+        self.o + self.d * t
+    }
+}

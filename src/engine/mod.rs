@@ -1,0 +1,20 @@
+//! The renderer core. It knows nothing of windows, prints nothing and reads no files outside `io`.
+//!
+//! A module uses only what stands before it in this list:
+//! math < sampling < geometry < {bsdf, light, camera} < scene < film < path < integrators <
+//! session < measure. `io` uses `scene::desc` only.
+
+pub mod bsdf;
+pub mod camera;
+pub mod film;
+pub mod geometry;
+pub mod integrators;
+pub mod io;
+pub mod light;
+pub mod math;
+pub mod measure;
+pub mod path;
+pub mod plan;
+pub mod sampling;
+pub mod scene;
+pub mod session;

@@ -1,0 +1,3 @@
+//! Scenes: as authored (`desc`) and as prepared for rendering (`scene`).
+
+pub mod desc;
