@@ -6,6 +6,7 @@
 
 pub mod bsdf;
 pub mod camera;
+pub mod event;
 pub mod film;
 pub mod geometry;
 pub mod integrators;

@@ -47,7 +47,11 @@ impl SurfaceInteraction {
         let o = offset_origin(self.p, self.p_error, self.n_g, target - self.p);
         let to = target - o;
         let t = to.length();
-        Ray { o, d: to / t, t_max: t * (1.0 - SHADOW_SHORTENING) }
+        Ray {
+            o,
+            d: to / t,
+            t_max: t * (1.0 - SHADOW_SHORTENING),
+        }
     }
 }
 

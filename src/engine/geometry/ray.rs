@@ -17,7 +17,11 @@ impl Ray {
     /// A ray without end.
     #[inline]
     pub fn new(o: Vec3A, d: Vec3A) -> Self {
-        Self { o, d, t_max: f32::INFINITY }
+        Self {
+            o,
+            d,
+            t_max: f32::INFINITY,
+        }
     }
 
     /// The point at distance `t`.

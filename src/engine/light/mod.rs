@@ -1,1 +1,1 @@
-//! light
+//! Everything that emits.

@@ -31,7 +31,9 @@ impl Sampler for IndependentSampler {
     fn next_1d(&mut self) -> f32 {
         self.dimension += 1;
         // SplitMix64 with the dimension as its counter.
-        unit_f32(mix64(self.key.wrapping_add(self.dimension.wrapping_mul(0x9e37_79b9_7f4a_7c15))))
+        unit_f32(mix64(self.key.wrapping_add(
+            self.dimension.wrapping_mul(0x9e37_79b9_7f4a_7c15),
+        )))
     }
 
     #[inline]

@@ -27,7 +27,12 @@ impl SobolSampler {
         let block = index.1 >> BLOCK_BITS;
         let key = combine(combine(combine(seed, stream as u64), index.0), block);
         let point = (index.1 & ((1 << BLOCK_BITS) - 1)) as u32;
-        Self { key, point, dimension: 0, group: [0.0; GROUP as usize] }
+        Self {
+            key,
+            point,
+            dimension: 0,
+            group: [0.0; GROUP as usize],
+        }
     }
 
     /// Evaluates the four dimensions around the current one.
@@ -35,7 +40,10 @@ impl SobolSampler {
     fn load(&mut self) {
         let set = self.dimension / GROUP;
         // 256 dimensions are stratified together; each further block takes another scramble.
-        let (block, set) = (set / sobol_burley::NUM_DIMENSION_SETS_4D, set % sobol_burley::NUM_DIMENSION_SETS_4D);
+        let (block, set) = (
+            set / sobol_burley::NUM_DIMENSION_SETS_4D,
+            set % sobol_burley::NUM_DIMENSION_SETS_4D,
+        );
         let scramble = (self.key ^ (self.key >> 32)) as u32 ^ block.wrapping_mul(0x9e37_79b9);
         self.group = sobol_burley::sample_4d(self.point, set, scramble);
     }
