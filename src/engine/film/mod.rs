@@ -1,1 +1,15 @@
-//! film
+//! Where radiance is added up, and the pictures that are taken of it.
+//!
+//! A pass writes into a [`PassBuffer`] (f32, one sample per pixel and layer); only a pass that
+//! was completed is added to the [`Film`] (f64 sums), so a cancelled one leaves no trace.
+
+pub mod accumulator;
+pub mod frame;
+pub mod pass_buffer;
+pub mod sample;
+pub mod tiles;
+
+pub use accumulator::Film;
+pub use frame::{Frame, FrameLayer};
+pub use pass_buffer::PassBuffer;
+pub use sample::SampleRadiance;

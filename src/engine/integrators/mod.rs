@@ -1,1 +1,59 @@
-//! integrators
+//! Algorithms that estimate the rendering equation, and the table that drives command line,
+//! window and tests.
+//!
+//! Adding one is a file with an [`Entry`] and a line in [`REGISTRY`].
+
+pub mod params;
+pub mod pass;
+pub mod path;
+pub mod stats;
+pub mod tiled;
+
+pub use params::{ParamKind, ParamSpec, ParamValue, Params};
+pub use pass::{Cancel, Cancelled, Pass};
+pub use stats::{BadSample, RenderStats};
+
+use crate::engine::film::Film;
+use crate::engine::scene::features::SceneFeatures;
+
+/// One algorithm, prepared for one job.
+pub trait Integrator: Send {
+    /// Computes one pass, one more sample of every pixel, and adds it to `film`.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the job was replaced meanwhile; the film is then as it was.
+    fn render_pass(&mut self, pass: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled>;
+}
+
+/// All that is known of an integrator without running it.
+pub struct Entry {
+    /// Id on the command line.
+    pub id: &'static str,
+    /// Name in the window.
+    pub label: &'static str,
+    /// One sentence: when to use it, when not.
+    pub summary: &'static str,
+    /// Its parameters.
+    pub params: &'static [ParamSpec],
+    /// The words it cannot find in a scene of these features, as an expression, with the reason.
+    pub missing: fn(&SceneFeatures, &Params) -> Option<Missing>,
+    /// Prepares it.
+    pub build: fn(&Params) -> Box<dyn Integrator>,
+}
+
+/// Paths that no strategy of an integrator can find.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// An expression that the lost words match.
+    pub words: &'static str,
+    /// Why, in one sentence.
+    pub why: &'static str,
+}
+
+/// Every integrator, in the order of the window's list.
+pub const REGISTRY: &[Entry] = &[path::ENTRY];
+
+/// The integrator of that id.
+pub fn find(id: &str) -> Option<&'static Entry> {
+    REGISTRY.iter().find(|e| e.id == id)
+}

@@ -1,3 +1,11 @@
-//! Scenes: as authored (`desc`) and as prepared for rendering (`scene`).
+//! Scenes: as authored (`desc`), as prepared for rendering (`Scene`), and the step between
+//! (`build`).
 
+pub mod build;
 pub mod desc;
+pub mod features;
+mod prepared;
+
+pub use desc::SceneDesc;
+pub use features::SceneFeatures;
+pub use prepared::Scene;

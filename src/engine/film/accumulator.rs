@@ -1,0 +1,178 @@
+//! The sums over all passes.
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use super::frame::FrameLayer;
+use super::pass_buffer::{PassBuffer, PassTile};
+use super::tiles::{TILE_PIXELS, Tiles};
+
+type Plane = Box<[[f64; 3]; TILE_PIXELS]>;
+
+/// Sums in f64 of all completed passes: 2²⁵ samples of 1 still count exactly.
+#[derive(Clone, Debug)]
+pub struct Film {
+    tiles: Tiles,
+    planned: u32,
+    data: Vec<FilmTile>,
+    passes: u64,
+}
+
+#[derive(Clone, Debug)]
+struct FilmTile {
+    /// Plane 0 is the whole, then the planned layers in ascending order.
+    sums: Vec<Plane>,
+    /// The whole over the even passes alone: they use a scramble of their own, so the two halves
+    /// are independent estimates and their difference measures the error (also of Sobol points,
+    /// whose samples within one scramble are not independent).
+    even: Plane,
+    /// Samples that were not finite, a pixel (even and odd passes).
+    rejected: Option<Box<[[u32; 2]; TILE_PIXELS]>>,
+}
+
+impl FilmTile {
+    fn new(planes: usize) -> Self {
+        let zero: Plane = Box::new([[0.0; 3]; TILE_PIXELS]);
+        Self { sums: vec![zero.clone(); planes], even: zero, rejected: None }
+    }
+
+    fn add(&mut self, pass: &PassTile, even: bool) {
+        for (p, sums) in self.sums.iter_mut().enumerate() {
+            add_plane(sums, pass.plane(p));
+        }
+        if even {
+            add_plane(&mut self.even, pass.plane(0));
+        }
+        let mut mask = pass.rejected;
+        while mask != 0 {
+            let rejected = self.rejected.get_or_insert_with(|| Box::new([[0; 2]; TILE_PIXELS]));
+            rejected[mask.trailing_zeros() as usize][usize::from(!even)] += 1;
+            mask &= mask - 1;
+        }
+    }
+
+    /// Finite samples of the pixel at `place` among `passes` passes, of the even and odd ones.
+    fn counts(&self, place: usize, passes: u64) -> [u64; 2] {
+        let rejected = self.rejected.as_ref().map_or([0; 2], |r| r[place]);
+        [passes.div_ceil(2) - u64::from(rejected[0]), passes / 2 - u64::from(rejected[1])]
+    }
+}
+
+fn add_plane(sums: &mut [[f64; 3]; TILE_PIXELS], values: &[[f32; 3]; TILE_PIXELS]) {
+    for (s, v) in sums.iter_mut().zip(values) {
+        for c in 0..3 {
+            s[c] += f64::from(v[c]);
+        }
+    }
+}
+
+impl Film {
+    /// An empty film of `size` pixels for the whole and the layers of the bit mask `planned`.
+    pub fn new(size: UVec2, planned: u32) -> Self {
+        let tiles = Tiles::new(size);
+        let planes = 1 + planned.count_ones() as usize;
+        Self { tiles, planned, data: vec![FilmTile::new(planes); tiles.len()], passes: 0 }
+    }
+
+    /// Size in pixels.
+    pub fn size(&self) -> UVec2 {
+        self.tiles.size()
+    }
+
+    /// Completed passes.
+    pub fn passes(&self) -> u64 {
+        self.passes
+    }
+
+    /// Memory of the sums in bytes.
+    pub fn bytes(&self) -> usize {
+        let planes = 2 + self.planned.count_ones() as usize;
+        self.data.len() * planes * size_of::<[[f64; 3]; TILE_PIXELS]>()
+    }
+
+    /// Adds a completed pass.
+    pub fn commit(&mut self, pass: &PassBuffer) {
+        debug_assert!(pass.tiles() == self.tiles && pass.planned() == self.planned);
+        let even = self.passes.is_multiple_of(2);
+        self.data.par_iter_mut().zip(pass.data()).for_each(|(film, pass)| film.add(pass, even));
+        self.passes += 1;
+    }
+
+    /// The mean radiance of plane `plane` (0 the whole, then the planned layers), row by row from
+    /// the top. A pixel without any finite sample is NaN, for the display to mark.
+    fn resolve_plane(&self, plane: usize, out: &mut Vec<[f32; 3]>) {
+        let size = self.size();
+        out.clear();
+        out.resize(size.x as usize * size.y as usize, [0.0; 3]);
+        if self.passes == 0 || out.is_empty() {
+            return;
+        }
+        let rows = size.x as usize * super::tiles::TILE as usize;
+        let columns = size.x.div_ceil(super::tiles::TILE) as usize;
+        out.par_chunks_mut(rows).enumerate().for_each(|(tile_row, rows)| {
+            let top = tile_row as u32 * super::tiles::TILE;
+            for t in tile_row * columns..(tile_row + 1) * columns {
+                let tile = &self.data[t];
+                for (place, pixel) in self.tiles.pixels(t) {
+                    let [even, odd] = tile.counts(place, self.passes);
+                    let scale = 1.0 / (even + odd) as f64;
+                    let sum = tile.sums[plane][place];
+                    rows[((pixel.y - top) * size.x + pixel.x) as usize] =
+                        sum.map(|s| (s * scale) as f32);
+                }
+            }
+        });
+    }
+
+    /// Means of the whole and of layer after layer; layers without a plane are zero.
+    pub fn resolve(&self, labels: &[String], layers: &mut Vec<FrameLayer>) {
+        layers.resize_with(1 + labels.len(), FrameLayer::default);
+        self.resolve_plane(0, &mut layers[0].pixels);
+        layers[0].label = "whole".to_owned();
+        let mut plane = 1;
+        for (i, label) in labels.iter().enumerate() {
+            let layer = &mut layers[1 + i];
+            layer.label.clone_from(label);
+            if self.planned & (1 << i) != 0 {
+                self.resolve_plane(plane, &mut layer.pixels);
+                plane += 1;
+            } else {
+                layer.pixels.clear();
+                layer.pixels.resize(layers_len(self.size()), [0.0; 3]);
+            }
+        }
+    }
+
+    /// Estimated RMSE of the whole over pixels and channels, divided by the image mean: half the
+    /// RMS difference of the two independent halves. None before each half has a pass, and for a
+    /// black image.
+    pub fn relative_error(&self) -> Option<f64> {
+        if self.passes < 2 {
+            return None;
+        }
+        let (mut sum, mut squares, mut n) = (0.0, 0.0, 0u64);
+        for (t, tile) in self.data.iter().enumerate() {
+            for (place, _) in self.tiles.pixels(t) {
+                let [even, odd] = tile.counts(place, self.passes);
+                if even == 0 || odd == 0 {
+                    continue;
+                }
+                let (total, half) = (tile.sums[0][place], tile.even[place]);
+                let (n_even, n_odd) = (even as f64, odd as f64);
+                for c in 0..3 {
+                    let (a, b) = (half[c] / n_even, (total[c] - half[c]) / n_odd);
+                    sum += total[c] / (n_even + n_odd);
+                    // Var(a − b) = σ²(1/nₑ + 1/nₒ), and the mean's variance is σ²/(nₑ + nₒ).
+                    squares += (a - b).powi(2) * n_even * n_odd / (n_even + n_odd).powi(2);
+                    n += 1;
+                }
+            }
+        }
+        let mean = sum / n as f64;
+        (mean > 0.0).then(|| (squares / n as f64).sqrt() / mean)
+    }
+}
+
+fn layers_len(size: UVec2) -> usize {
+    size.x as usize * size.y as usize
+}

@@ -1,0 +1,77 @@
+//! An immutable snapshot of a render: all that the window and the exporters see.
+
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use crate::engine::integrators::RenderStats;
+use crate::engine::plan::RenderPlan;
+
+/// A picture: mean radiance, row by row from the top left.
+#[derive(Clone, Debug, Default)]
+pub struct FrameLayer {
+    /// `whole`, a component's name, or `expr1` ….
+    pub label: String,
+    /// `width * height` pixels; NaN where every sample was rejected.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+/// What a render looked like after its last published pass.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The job it belongs to; later jobs have larger numbers.
+    pub epoch: u64,
+    /// Pixels of the layers; smaller than `full_size` while it is coarse.
+    pub size: UVec2,
+    /// Pixels that were asked for.
+    pub full_size: UVec2,
+    /// Passes in the sums (1 for a coarse frame).
+    pub passes: u64,
+    /// Wall time in seconds since the job was accepted, pauses left out.
+    pub t_wall: f64,
+    /// Process time in seconds over the same span.
+    pub t_cpu: f64,
+    /// The whole, the four components in the order of [`crate::engine::path::COMPONENTS`], then
+    /// typed expressions.
+    pub layers: Vec<FrameLayer>,
+    /// Counts since the job began.
+    pub stats: RenderStats,
+    /// Estimated RMSE / image mean, where two independent halves exist.
+    pub relative_error: Option<f64>,
+    /// What is computed and what was left out.
+    pub plan: Arc<RenderPlan>,
+    /// The job is paused.
+    pub paused: bool,
+    /// A sentence for the user when the render stopped with an error.
+    pub error: Option<String>,
+}
+
+impl Frame {
+    /// A frame without pixels.
+    pub fn empty(plan: Arc<RenderPlan>) -> Self {
+        Self {
+            epoch: 0,
+            size: UVec2::ZERO,
+            full_size: UVec2::ZERO,
+            passes: 0,
+            t_wall: 0.0,
+            t_cpu: 0.0,
+            layers: Vec::new(),
+            stats: RenderStats::default(),
+            relative_error: None,
+            plan,
+            paused: false,
+            error: None,
+        }
+    }
+
+    /// A frame without pixels that says what went wrong.
+    pub fn failed(error: String) -> Self {
+        Self { error: Some(error), ..Self::empty(Arc::new(RenderPlan::nothing())) }
+    }
+
+    /// True while a lower resolution stands in for the picture.
+    pub fn is_coarse(&self) -> bool {
+        self.size != self.full_size
+    }
+}

@@ -1,0 +1,85 @@
+//! Light found by shadow rays.
+
+use super::walk::Walk;
+use super::{Mode, PathTracer};
+use crate::engine::bsdf::{Bsdf, Transport};
+use crate::engine::film::SampleRadiance;
+use crate::engine::geometry::SurfaceInteraction;
+use crate::engine::integrators::{Pass, RenderStats};
+use crate::engine::light::LightSample;
+use crate::engine::sampling::{Sampler, mis};
+
+impl PathTracer {
+    /// Next event estimation at `si`: in mode `mis` toward one light chosen at random, in mode
+    /// `kajiya` toward every light.
+    #[expect(clippy::too_many_arguments, reason = "the state of one walk; a struct would be made and taken apart once a vertex")]
+    pub(super) fn add_direct<S: Sampler>(
+        &self,
+        cx: &Pass<'_>,
+        walk: &Walk,
+        si: &SurfaceInteraction,
+        bsdf: &Bsdf,
+        sampler: &mut S,
+        out: &mut SampleRadiance<'_>,
+        stats: &mut RenderStats,
+    ) {
+        let lights = &cx.scene.lights;
+        let u = sampler.next_2d();
+        if self.mode == Mode::Mis {
+            let (id, pmf) = lights.sample(sampler.next_1d());
+            if let Some(sample) = lights.get(id).sample_li(si.p, u) {
+                self.add_light_sample(cx, walk, si, bsdf, &sample, pmf, out, stats);
+            }
+            return;
+        }
+        // One point of the square serves all lights, turned by a number of each light's own.
+        for (i, light) in lights.iter().enumerate() {
+            let shift = glam::Vec2::new(i as f32 * 0.754_877_7, i as f32 * 0.569_840_3);
+            if let Some(sample) = light.sample_li(si.p, (u + shift).fract()) {
+                self.add_light_sample(cx, walk, si, bsdf, &sample, 1.0, out, stats);
+            }
+        }
+    }
+
+    /// The contribution of one light sample, summed over the non-delta events of `bsdf`, each
+    /// with the class and the weight of its own (CONTRACT rule 2).
+    #[expect(clippy::too_many_arguments, reason = "see add_direct")]
+    fn add_light_sample(
+        &self,
+        cx: &Pass<'_>,
+        walk: &Walk,
+        si: &SurfaceInteraction,
+        bsdf: &Bsdf,
+        light: &LightSample,
+        pmf: f32,
+        out: &mut SampleRadiance<'_>,
+        stats: &mut RenderStats,
+    ) {
+        let light_pdf = pmf * light.pdf_dir;
+        let incident = walk.throughput * light.radiance * (1.0 / light_pdf);
+        let mut visibility = None;
+        for event in bsdf.non_delta_events() {
+            let class = cx.plan.classes.prepend(event.letter(), walk.suffix);
+            if !cx.plan.is_wanted(class) {
+                continue;
+            }
+            let f_cos = bsdf.eval(event, si.wo, light.wi, Transport::Radiance);
+            if f_cos.is_black() {
+                continue;
+            }
+            let visible = *visibility.get_or_insert_with(|| {
+                stats.rays += 1;
+                cx.scene.transmittance(si, light)
+            });
+            if visible == 0.0 {
+                return;
+            }
+            let weight = if self.mode == Mode::Kajiya || light.is_delta {
+                1.0
+            } else {
+                mis::power(light_pdf, bsdf.pdf(event, si.wo, light.wi))
+            };
+            out.add(class, incident * f_cos * (weight * visible));
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! The walk from the eye.
+
+use glam::Vec3A;
+
+use super::{Mode, PathTracer};
+use crate::engine::bsdf::Transport;
+use crate::engine::event::Event;
+use crate::engine::film::SampleRadiance;
+use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::integrators::tiled::{CAMERA_DIMENSIONS, RayIntegrator};
+use crate::engine::integrators::{Pass, RenderStats};
+use crate::engine::math::Rgb;
+use crate::engine::path::ClassId;
+use crate::engine::sampling::{Sampler, mis};
+
+/// Most events of a path; beyond, it is cut and counted.
+const MAX_EVENTS: u32 = 10_000_000;
+/// Dimensions reserved per vertex: four for the walk, four for the shadow ray.
+const VERTEX_DIMENSIONS: u32 = 8;
+/// Survival of paths that lost nothing: with 1 a walk between perfect mirrors would not end.
+const MAX_SURVIVAL: f32 = 0.98;
+
+/// The state of a walk between two vertices.
+pub(super) struct Walk {
+    /// Product of f·cosθ/pdf over the events so far, survival divided out.
+    pub throughput: Rgb,
+    /// Class of the events so far, the light side still open.
+    pub suffix: ClassId,
+    /// Events so far.
+    pub depth: u32,
+    /// Product of the squared index ratios: roulette looks at what returns to the eye's medium.
+    eta2: f32,
+    /// Where the last event happened, and how.
+    last: Option<Scattered>,
+}
+
+struct Scattered {
+    p: Vec3A,
+    event: Event,
+    pdf_dir: f32,
+}
+
+impl RayIntegrator for PathTracer {
+    fn radiance<S: Sampler>(
+        &self,
+        cx: &Pass<'_>,
+        mut ray: Ray,
+        sampler: &mut S,
+        out: &mut SampleRadiance<'_>,
+        stats: &mut RenderStats,
+    ) {
+        let mut walk = Walk {
+            throughput: Rgb::WHITE,
+            suffix: ClassId::EMPTY,
+            depth: 0,
+            eta2: 1.0,
+            last: None,
+        };
+        loop {
+            // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
+            let first = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * walk.depth;
+            sampler.seek(first);
+            let (direction, event, roulette) =
+                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
+
+            // The next surface, or the sky.
+            stats.rays += 1;
+            let Some(si) = cx.scene.intersect(&ray, || opacity_number(sampler, first)) else {
+                self.add_escaped(cx, &walk, &ray, out);
+                return;
+            };
+
+            // Light that the walk met by itself.
+            self.add_emitted(cx, &walk, &si, out);
+            if cx.plan.max_depth.is_some_and(|max| walk.depth >= max) {
+                return;
+            }
+            if walk.depth >= MAX_EVENTS {
+                stats.cut_paths += 1;
+                return;
+            }
+
+            // Light found by shadow rays.
+            let bsdf = cx.scene.bsdf(&si);
+            if bsdf.is_empty() {
+                return;
+            }
+            if self.mode != Mode::Hits && cx.plan.shadow_rays && bsdf.has_non_delta() {
+                sampler.seek(first + 4);
+                self.add_direct(cx, &walk, &si, &bsdf, sampler, out, stats);
+            }
+
+            // One event, drawn by the roulette between the lobes.
+            let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Radiance) else {
+                stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
+                return;
+            };
+            walk.throughput *= sample.weight;
+            walk.eta2 *= sample.eta * sample.eta;
+            walk.suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
+            walk.depth += 1;
+            if cx.plan.is_pointless(walk.suffix) {
+                return;
+            }
+
+            // Russian roulette: survival divides the throughput and enters no weight.
+            if walk.depth > self.roulette {
+                let survival = (walk.throughput.max_component() * walk.eta2).min(MAX_SURVIVAL);
+                if roulette >= survival {
+                    return;
+                }
+                walk.throughput *= 1.0 / survival;
+            } else if walk.throughput.is_black() {
+                return;
+            }
+            walk.last =
+                Some(Scattered { p: si.p, event: sample.event, pdf_dir: sample.pdf_dir });
+            ray = si.spawn_ray(sample.wi);
+        }
+    }
+}
+
+/// The spare number of a vertex, for the stochastic passage through surfaces of opacity below 1.
+fn opacity_number<S: Sampler>(sampler: &mut S, first: u32) -> f32 {
+    sampler.seek(first + 7);
+    sampler.next_1d()
+}
+
+impl PathTracer {
+    /// Weight of light that the walk met, against a shadow ray toward it of density `light_pdf`
+    /// (selection included, 1/sr).
+    fn hit_weight(&self, last: Option<&Scattered>, light_pdf: impl FnOnce(Vec3A) -> f32) -> f32 {
+        let Some(last) = last else { return 1.0 };
+        if last.event.is_delta() {
+            return 1.0;
+        }
+        match self.mode {
+            Mode::Hits => 1.0,
+            Mode::Kajiya => 0.0,
+            Mode::Mis => mis::power(last.pdf_dir, light_pdf(last.p)),
+        }
+    }
+
+    fn add_emitted(
+        &self,
+        cx: &Pass<'_>,
+        walk: &Walk,
+        si: &SurfaceInteraction,
+        out: &mut SampleRadiance<'_>,
+    ) {
+        let Some(id) = si.light else { return };
+        let lights = &cx.scene.lights;
+        let light = lights.get(id);
+        let emitted = light.emitted(si);
+        if emitted.is_black() {
+            return;
+        }
+        let weight = self.hit_weight(walk.last.as_ref(), |p| {
+            lights.pmf(id) * light.pdf_li(p, -si.wo, Some(si))
+        });
+        out.add(walk.suffix, walk.throughput * emitted * weight);
+    }
+
+    fn add_escaped(&self, cx: &Pass<'_>, walk: &Walk, ray: &Ray, out: &mut SampleRadiance<'_>) {
+        let lights = &cx.scene.lights;
+        for &id in lights.environments() {
+            let light = lights.get(id);
+            let weight = self.hit_weight(walk.last.as_ref(), |p| {
+                lights.pmf(id) * light.pdf_li(p, ray.d, None)
+            });
+            out.add(walk.suffix, walk.throughput * light.escaped(ray.d) * weight);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! A scene ready for rendering. It never changes: an edit makes another one.
+
+use super::desc::CameraDesc;
+use super::features::SceneFeatures;
+use super::material::Material;
+use super::texture::Textures;
+use crate::engine::bsdf::Bsdf;
+use crate::engine::geometry::{Geometry, Ray, SurfaceInteraction};
+use crate::engine::light::{LightSample, Lights};
+
+/// Geometry, materials and lights in the form that is fast to query.
+pub struct Scene {
+    /// Name, for titles and logs.
+    pub name: String,
+    /// One line: what the scene shows.
+    pub description: String,
+    /// The view to open with.
+    pub camera: CameraDesc,
+    /// Surfaces.
+    pub geometry: Geometry,
+    /// Indexed by [`SurfaceInteraction::material`].
+    pub materials: Vec<Material>,
+    /// Names of the materials, by the same index.
+    pub material_names: Vec<String>,
+    /// Images and patterns that materials refer to.
+    pub textures: Textures,
+    /// Emitters.
+    pub lights: Lights,
+    /// What the scene holds.
+    pub features: SceneFeatures,
+    /// Sentences about what was assumed or dropped.
+    pub warnings: Vec<String>,
+}
+
+/// Most surfaces of opacity below 1 that one ray may cross.
+const MAX_CROSSINGS: u32 = 10_000;
+
+impl Scene {
+    /// The first surface along `ray` that stops it. Where surfaces have an opacity, it decides by
+    /// `number` (called at most once) whether the ray meets them; crossing one is no event.
+    #[inline]
+    pub fn intersect(
+        &self,
+        ray: &Ray,
+        number: impl FnOnce() -> f32,
+    ) -> Option<SurfaceInteraction> {
+        let hit = self.geometry.intersect(ray)?;
+        let si = self.geometry.interaction(ray, &hit);
+        if !self.features.opacity {
+            return Some(si);
+        }
+        self.cross(*ray, si, number())
+    }
+
+    /// Goes through surfaces while the random number `u` says so; what is left of it after one
+    /// decision is uniform again and serves the next.
+    fn cross(&self, ray: Ray, mut si: SurfaceInteraction, mut u: f32) -> Option<SurfaceInteraction> {
+        for _ in 0..MAX_CROSSINGS {
+            let opacity = self.materials[si.material as usize].opacity(&si, &self.textures);
+            if u < opacity {
+                return Some(si);
+            }
+            u = (u - opacity) / (1.0 - opacity);
+            let next = si.spawn_ray(ray.d);
+            let hit = self.geometry.intersect(&next)?;
+            si = self.geometry.interaction(&next, &hit);
+        }
+        None
+    }
+
+    /// The share of light that a shadow ray from `si` to `light` lets through: 0 or 1, and
+    /// between only where surfaces have an opacity.
+    #[inline]
+    pub fn transmittance(&self, si: &SurfaceInteraction, light: &LightSample) -> f32 {
+        let ray = if light.distance.is_finite() {
+            si.spawn_ray_to(light.target)
+        } else {
+            si.spawn_ray(light.wi)
+        };
+        if !self.features.opacity {
+            return f32::from(u8::from(!self.geometry.occluded(&ray)));
+        }
+        self.transmittance_along(ray)
+    }
+
+    fn transmittance_along(&self, mut ray: Ray) -> f32 {
+        let mut transmittance = 1.0;
+        for _ in 0..MAX_CROSSINGS {
+            let Some(hit) = self.geometry.intersect(&ray) else { return transmittance };
+            let si = self.geometry.interaction(&ray, &hit);
+            transmittance *= 1.0 - self.materials[si.material as usize].opacity(&si, &self.textures);
+            if transmittance == 0.0 {
+                return 0.0;
+            }
+            let t_max = ray.t_max - si.t;
+            ray = si.spawn_ray(ray.d);
+            ray.t_max = t_max;
+        }
+        0.0
+    }
+
+    /// The scattering at `si`.
+    #[inline]
+    pub fn bsdf(&self, si: &SurfaceInteraction) -> Bsdf {
+        self.materials[si.material as usize].bsdf(si, &self.textures)
+    }
+}

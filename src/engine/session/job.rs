@@ -1,0 +1,57 @@
+//! What to render.
+
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use crate::engine::camera::Camera;
+use crate::engine::integrators::{Entry, Params};
+use crate::engine::plan::LayerSettings;
+use crate::engine::scene::Scene;
+
+/// Everything beside scene and view that decides the picture.
+#[derive(Clone)]
+pub struct Settings {
+    /// The algorithm.
+    pub integrator: &'static Entry,
+    /// Its parameters.
+    pub params: Params,
+    /// Layers and depth.
+    pub layers: LayerSettings,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl Settings {
+    /// The defaults of an integrator, with the four components.
+    pub fn new(integrator: &'static Entry) -> Self {
+        Self {
+            integrator,
+            params: Params::defaults(integrator.params),
+            layers: LayerSettings { components: true, ..LayerSettings::default() },
+            seed: 0,
+        }
+    }
+
+    /// True if an integrator prepared for `other` serves here too.
+    pub(super) fn same_integrator(&self, other: &Self) -> bool {
+        std::ptr::eq(self.integrator, other.integrator)
+            && self.params == other.params
+            && self.seed == other.seed
+    }
+}
+
+/// A picture to be rendered.
+#[derive(Clone)]
+pub struct RenderJob {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The view; its size is replaced by `size`.
+    pub camera: Camera,
+    /// Pixels.
+    pub size: UVec2,
+    /// The rest.
+    pub settings: Settings,
+    /// The user is moving: show something coarse at once, refine later.
+    pub navigating: bool,
+}

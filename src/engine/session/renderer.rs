@@ -1,0 +1,172 @@
+//! One job, pass after pass, on the calling thread's pool. The session's worker and the command
+//! line both drive it.
+
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use super::clock::RenderClock;
+use super::job::{RenderJob, Settings};
+use crate::engine::camera::Camera;
+use crate::engine::film::{Film, Frame};
+use crate::engine::integrators::{Cancel, Cancelled, Integrator, Pass, RenderStats};
+use crate::engine::path::ExpressionError;
+use crate::engine::plan::RenderPlan;
+use crate::engine::scene::Scene;
+
+/// A render under way.
+pub struct Renderer {
+    scene: Arc<Scene>,
+    camera: Camera,
+    size: UVec2,
+    settings: Settings,
+    plan: Arc<RenderPlan>,
+    integrator: Box<dyn Integrator>,
+    film: Film,
+    stats: RenderStats,
+    clock: RenderClock,
+}
+
+impl Renderer {
+    /// Accepts a job; `t_wall` counts from here.
+    ///
+    /// # Errors
+    /// If its expressions together need too large a table.
+    pub fn new(job: &RenderJob) -> Result<Self, ExpressionError> {
+        let clock = RenderClock::start();
+        let lens = job.camera.has_lens();
+        let plan = RenderPlan::new(&job.scene, lens, &job.settings.layers)?;
+        Ok(Self::with_plan(job, plan, clock))
+    }
+
+    /// Accepts a job in place of `previous`, and keeps its integrator if only the view changed.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn replace(previous: Option<Self>, job: &RenderJob) -> Result<Self, ExpressionError> {
+        let mut renderer = Self::new(job)?;
+        if let Some(previous) = previous.filter(|p| {
+            Arc::ptr_eq(&p.scene, &job.scene) && p.settings.same_integrator(&job.settings)
+        }) {
+            renderer.integrator = previous.integrator;
+        }
+        Ok(renderer)
+    }
+
+    /// Renders with a plan of the caller's: for the test that a plan changes nothing.
+    pub fn with_plan(job: &RenderJob, plan: RenderPlan, clock: RenderClock) -> Self {
+        Self {
+            scene: Arc::clone(&job.scene),
+            camera: job.camera.with_size(job.size),
+            size: job.size,
+            settings: job.settings.clone(),
+            film: Film::new(job.size, plan.planned),
+            integrator: (job.settings.integrator.build)(&job.settings.params),
+            plan: Arc::new(plan),
+            stats: RenderStats::default(),
+            clock,
+        }
+    }
+
+    /// Computes the next pass.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `cancel` says so; the sums are then as before.
+    pub fn render_pass(&mut self, cancel: &Cancel) -> Result<(), Cancelled> {
+        let pass = Pass {
+            scene: &self.scene,
+            camera: &self.camera,
+            plan: &self.plan,
+            seed: self.settings.seed,
+            index: self.film.passes(),
+            cancel,
+        };
+        self.stats += self.integrator.render_pass(&pass, &mut self.film)?;
+        Ok(())
+    }
+
+    /// A picture of one sample a pixel at 1 / `divisor` of the resolution. It does not enter the
+    /// sums.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `cancel` says so.
+    pub fn render_coarse(&mut self, divisor: u32, cancel: &Cancel) -> Result<Film, Cancelled> {
+        let size = (self.size / divisor).max(UVec2::ONE);
+        let camera = self.camera.with_size(size);
+        let mut film = Film::new(size, self.plan.planned);
+        let pass = Pass {
+            scene: &self.scene,
+            camera: &camera,
+            plan: &self.plan,
+            seed: self.settings.seed,
+            index: 0,
+            cancel,
+        };
+        self.integrator.render_pass(&pass, &mut film)?;
+        Ok(film)
+    }
+
+    /// Seed of all random numbers.
+    pub fn seed(&self) -> u64 {
+        self.settings.seed
+    }
+
+    /// Pixels of the full picture.
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// Completed passes.
+    pub fn passes(&self) -> u64 {
+        self.film.passes()
+    }
+
+    /// Estimated RMSE / image mean.
+    pub fn relative_error(&self) -> Option<f64> {
+        self.film.relative_error()
+    }
+
+    /// What is computed.
+    pub fn plan(&self) -> &Arc<RenderPlan> {
+        &self.plan
+    }
+
+    /// Counts so far.
+    pub fn stats(&self) -> RenderStats {
+        self.stats
+    }
+
+    /// Time so far.
+    pub fn clock(&mut self) -> &mut RenderClock {
+        &mut self.clock
+    }
+
+    /// Memory of the sums in bytes.
+    pub fn film_bytes(&self) -> usize {
+        self.film.bytes()
+    }
+
+    /// Takes a picture of `coarse`, or of the sums, into `frame`, whose memory is used again.
+    pub fn snapshot(&self, coarse: Option<&Film>, epoch: u64, frame: &mut Frame) {
+        let film = coarse.unwrap_or(&self.film);
+        film.resolve(&self.plan.labels, &mut frame.layers);
+        frame.epoch = epoch;
+        frame.size = film.size();
+        frame.full_size = self.size;
+        frame.passes = film.passes();
+        frame.t_wall = self.clock.wall();
+        frame.t_cpu = self.clock.cpu();
+        frame.stats = self.stats;
+        frame.relative_error = if coarse.is_none() { film.relative_error() } else { None };
+        frame.plan = Arc::clone(&self.plan);
+        frame.paused = false;
+        frame.error = None;
+    }
+
+    /// A picture of the sums in a frame of its own.
+    pub fn frame(&self) -> Frame {
+        let mut frame = Frame::empty(Arc::clone(&self.plan));
+        self.snapshot(None, 0, &mut frame);
+        frame
+    }
+}
