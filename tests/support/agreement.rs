@@ -1,0 +1,170 @@
+//! The statistical test of agreement of two images.
+//!
+//! (a) The image mean of every layer differs by less than 1 % of the whole's mean, or than 4
+//! combined standard errors. (b) Means of 8×8 blocks pass a t-test with Šidák's correction at a
+//! family-wise rate of 1e-4. Standard errors come from independent runs; blocks of zero variance
+//! must be equal to 1e-5.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Rate at which two images that agree are told to differ.
+const FAMILY_WISE_RATE: f64 = 1e-4;
+const BLOCK: usize = 8;
+
+/// A layer known with its error: block means of each channel, their variances, and the degrees
+/// of freedom those were estimated with.
+pub struct Blocks {
+    mean: Vec<[f64; 3]>,
+    variance: Vec<[f64; 3]>,
+    freedom: f64,
+    weight: Vec<f64>,
+}
+
+/// Means over the blocks of an image.
+fn block_means(pixels: &[[f32; 3]], width: usize) -> Vec<([f64; 3], f64)> {
+    let height = pixels.len() / width;
+    let mut blocks = Vec::new();
+    for y0 in (0..height).step_by(BLOCK) {
+        for x0 in (0..width).step_by(BLOCK) {
+            let (mut sum, mut n) = ([0.0; 3], 0.0);
+            for y in y0..(y0 + BLOCK).min(height) {
+                for pixel in &pixels[y * width + x0..y * width + (x0 + BLOCK).min(width)] {
+                    (0..3).for_each(|c| sum[c] += f64::from(pixel[c]));
+                    n += 1.0;
+                }
+            }
+            blocks.push((sum.map(|s| s / n), n));
+        }
+    }
+    blocks
+}
+
+impl Blocks {
+    /// From at least 16 independent runs of one layer.
+    pub fn from_runs(runs: &[&[[f32; 3]]], width: usize) -> Self {
+        assert!(runs.len() >= 16, "standard errors need at least 16 runs");
+        let n = runs.len() as f64;
+        let means: Vec<_> = runs.iter().map(|r| block_means(r, width)).collect();
+        let count = means[0].len();
+        let (mut mean, mut variance) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
+        for b in 0..count {
+            for c in 0..3 {
+                let m = means.iter().map(|r| r[b].0[c]).sum::<f64>() / n;
+                let squares = means.iter().map(|r| (r[b].0[c] - m).powi(2)).sum::<f64>();
+                mean[b][c] = m;
+                variance[b][c] = squares / (n - 1.0) / n;
+            }
+        }
+        let weight = means[0].iter().map(|b| b.1).collect();
+        Self { mean, variance, freedom: n - 1.0, weight }
+    }
+
+    /// From a reference image and the standard error of each of its pixels, which are independent
+    /// of each other.
+    pub fn from_reference(pixels: &[[f32; 3]], se: &[[f32; 3]], width: usize) -> Self {
+        let squares: Vec<[f32; 3]> = se.iter().map(|p| p.map(|x| x * x)).collect();
+        let (mean, weight) = block_means(pixels, width).into_iter().unzip();
+        let variance = block_means(&squares, width);
+        let variance = variance.into_iter().map(|(v, n)| v.map(|x| x / n)).collect();
+        Self { mean, variance, freedom: 1e6, weight }
+    }
+
+    /// The exact value `value` everywhere.
+    pub fn exact(value: f32, width: usize, height: usize) -> Self {
+        let pixels = vec![[value; 3]; width * height];
+        Self::from_reference(&pixels, &vec![[0.0; 3]; width * height], width)
+    }
+
+    /// Mean and variance of the mean over the image, all channels together. Channels of a pixel
+    /// are correlated, so their standard errors add up.
+    fn image(&self) -> (f64, f64) {
+        let total: f64 = self.weight.iter().sum();
+        let (mut mean, mut se) = (0.0, 0.0);
+        for c in 0..3 {
+            let mut variance = 0.0;
+            for (b, w) in self.weight.iter().enumerate() {
+                mean += self.mean[b][c] * w / total / 3.0;
+                variance += self.variance[b][c] * (w / total).powi(2);
+            }
+            se += variance.sqrt() / 3.0;
+        }
+        (mean, se * se)
+    }
+}
+
+/// What the comparison of one layer found.
+pub struct Verdict {
+    /// Empty if the layers agree.
+    pub complaints: Vec<String>,
+    /// Smallest bias of the image mean that (a) would have caught, as a share of the whole.
+    pub sensitivity: f64,
+    /// Largest deviation of a block in standard errors.
+    pub worst: f64,
+}
+
+/// Compares layer `label` of `a` with that of `b`; `whole` is the mean of the whole image and
+/// `family` the number of layers tested together.
+pub fn compare(label: &str, a: &Blocks, b: &Blocks, whole: f64, family: usize) -> Verdict {
+    let mut complaints = Vec::new();
+    let ((mean_a, var_a), (mean_b, var_b)) = (a.image(), b.image());
+    let se = (var_a + var_b).sqrt();
+    let difference = (mean_a - mean_b).abs();
+    if difference > (0.01 * whole).max(4.0 * se) {
+        complaints.push(format!("{label}: image mean {mean_a} against {mean_b}, error {se}"));
+    }
+    let tests = (a.mean.len() * 3 * family) as f64;
+    // Šidák: each test at the rate 1 − (1 − α)^(1/n).
+    let rate = -f64::exp_m1((-FAMILY_WISE_RATE).ln_1p() / tests);
+    let mut worst: f64 = 0.0;
+    for block in 0..a.mean.len() {
+        for c in 0..3 {
+            let (va, vb) = (a.variance[block][c], b.variance[block][c]);
+            let difference = (a.mean[block][c] - b.mean[block][c]).abs();
+            if va + vb == 0.0 {
+                if difference > 1e-5 * whole.max(1e-30) {
+                    complaints.push(format!("{label}: block {block} differs by {difference}"));
+                }
+                continue;
+            }
+            let t = difference / (va + vb).sqrt();
+            worst = worst.max(t);
+            // Welch–Satterthwaite.
+            let freedom = (va + vb).powi(2) / (va * va / a.freedom + vb * vb / b.freedom);
+            let p = 2.0 * StudentsT::new(0.0, 1.0, freedom).expect("freedom").sf(t);
+            if p < rate {
+                let (x, y) = (a.mean[block][c], b.mean[block][c]);
+                complaints.push(format!(
+                    "{label}: block {block} channel {c}: {x} against {y}, t = {t:.1}"
+                ));
+            }
+        }
+    }
+    Verdict { complaints, sensitivity: (0.01 * whole).max(4.0 * se) / whole, worst }
+}
+
+/// Mean of all pixels and channels.
+pub fn mean(pixels: &[[f32; 3]]) -> f64 {
+    let sum: f64 = pixels.iter().flatten().map(|&x| f64::from(x)).sum();
+    sum / (3 * pixels.len()) as f64
+}
+
+mod tests {
+    use super::*;
+
+    fn noisy_runs(bias: f32) -> Vec<Vec<[f32; 3]>> {
+        use lightscope::engine::math::hash::{combine, unit_f32};
+        let value = |run: u64, i: u64| 1.0 + bias + 0.2 * (unit_f32(combine(run, i)) - 0.5);
+        (0..16).map(|r| (0..4096).map(|i| [value(r, i); 3]).collect()).collect()
+    }
+
+    #[test]
+    fn a_bias_of_one_percent_is_caught_and_none_is_not() {
+        let exact = Blocks::exact(1.0, 64, 64);
+        for (bias, agrees) in [(0.0, true), (0.012, false)] {
+            let runs = noisy_runs(bias);
+            let runs: Vec<&[[f32; 3]]> = runs.iter().map(Vec::as_slice).collect();
+            let verdict = compare("whole", &Blocks::from_runs(&runs, 64), &exact, 1.0, 1);
+            assert_eq!(verdict.complaints.is_empty(), agrees, "{:?}", verdict.complaints);
+        }
+    }
+}
