@@ -13,7 +13,7 @@ use crate::engine::integrators::{self, Entry, Params, REGISTRY};
 use crate::engine::io::scene_file;
 use crate::engine::plan::RenderPlan;
 use crate::engine::scene::desc::CameraDesc;
-use crate::engine::scene::{Scene, SceneDesc, build as prepare, embedded};
+use crate::engine::scene::{Scene, SceneDesc, embedded};
 use crate::engine::session::RenderJob;
 
 /// The scene that is shown where none is named.
@@ -21,7 +21,7 @@ pub const DEFAULT_SCENE: &str = "jensen-box";
 
 /// The scene called `name`: an embedded one, or else a file.
 pub fn read(name: &str) -> Result<SceneDesc, CliError> {
-    if embedded::all().iter().any(|scene| scene.id == name) {
+    if is_embedded(name) {
         return embedded::read(name).map_err(|error| CliError::usage(error.to_string()));
     }
     let path = Path::new(name);
@@ -36,9 +36,14 @@ pub fn read(name: &str) -> Result<SceneDesc, CliError> {
     read_file(path)
 }
 
+/// True if `name` is the id of an embedded scene.
+pub fn is_embedded(name: &str) -> bool {
+    embedded::all().iter().any(|scene| scene.id == name)
+}
+
 /// The scene in a file.
 pub fn read_file(path: &Path) -> Result<SceneDesc, CliError> {
-    scene_file::read(path).map_err(|error| CliError::usage(error.to_string()))
+    scene_file::load(path).map_err(|error| CliError::usage(error.to_string()))
 }
 
 /// The embedded scenes.
@@ -58,14 +63,14 @@ pub fn listed() -> Result<Vec<Row>, CliError> {
 
 /// Prepares a scene, and its camera for a picture of `size` pixels.
 pub fn build(desc: &SceneDesc, size: UVec2) -> Result<(Arc<Scene>, Camera), CliError> {
-    let scene = prepare::build(desc).map_err(|error| CliError::usage(error.to_string()))?;
-    Ok((Arc::new(scene), camera(&desc.camera, size)?))
+    let scene = Scene::build(desc).map_err(|error| CliError::usage(error.to_string()))?;
+    let camera = camera(&scene.camera, size);
+    Ok((Arc::new(scene), camera))
 }
 
 /// A camera for a picture of `size` pixels.
-pub fn camera(desc: &CameraDesc, size: UVec2) -> Result<Camera, CliError> {
-    let camera = Camera::new(desc).map_err(|error| CliError::usage(error.to_string()))?;
-    Ok(camera.with_size(size))
+pub fn camera(desc: &CameraDesc, size: UVec2) -> Camera {
+    Camera::new(desc).with_size(size)
 }
 
 /// What a job needs computed.

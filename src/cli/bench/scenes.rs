@@ -56,8 +56,7 @@ fn measure(folder: &Path, settings: &Settings, seconds: f64) -> Result<Row, CliE
     }
     renderer.clock().pause();
     let frame = renderer.frame();
-    let whole = reference.layers.iter().find(|layer| layer.label == "whole");
-    let metrics = whole.and_then(|r| Metrics::new(&frame.layers[0].pixels, &r.pixels));
+    let metrics = reference.whole().and_then(|r| Metrics::new(&frame.layers[0].pixels, &r.pixels));
     let Some(metrics) = metrics else {
         let folder = folder.display();
         return Err(CliError::usage(format!("{folder}: the reference has no finite pixels")));

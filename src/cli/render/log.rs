@@ -102,7 +102,7 @@ fn whole_of_size(path: &Path, size: UVec2) -> Result<Vec<[f32; 3]>, CliError> {
             size.y
         )));
     }
-    let whole = reference.layers.into_iter().find(|layer| layer.label == "whole");
+    let whole = reference.layers.into_iter().find(|layer| layer.label == picture::WHOLE);
     whole.map(|layer| layer.pixels).ok_or_else(|| {
         CliError::usage(format!("the reference {} has no channels R, G and B", path.display()))
     })

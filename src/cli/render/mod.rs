@@ -21,7 +21,7 @@ use crate::engine::measure::Metrics;
 use crate::engine::scene::SceneDesc;
 use crate::engine::session::{RenderClock, RenderJob, Renderer};
 use log::Log;
-use options::RenderOptions;
+pub use options::RenderOptions;
 use progress::Progress;
 use stop::State;
 
@@ -89,7 +89,7 @@ fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Re
         eprintln!("note: interrupted; the picture holds the {} passes that were complete", frame.passes);
     }
     let attributes = Attributes::of(&rendered.scene, options, frame);
-    picture::write(&options.output, options, frame, &attributes)?;
+    picture::write(options, frame, &attributes)?;
     eprintln!("wrote {}", options.output.path.display());
     notes::print_after(frame, rendered.errors.as_ref());
     if args.json {

@@ -8,7 +8,7 @@ use crate::cli::error::CliError;
 use crate::cli::picture::{Format, Output};
 use crate::cli::scene::parameters;
 use crate::engine::film::ToneMap;
-use crate::engine::path::{Expression, PathClasses};
+use crate::engine::path::{Expression, ExpressionError, PathClasses};
 use crate::engine::plan::LayerSettings;
 use crate::engine::session::Settings;
 
@@ -18,8 +18,6 @@ pub struct RenderOptions {
     pub output: Output,
     /// Algorithm, parameters, layers, seed.
     pub settings: Settings,
-    /// The expressions as typed.
-    pub expressions: Vec<String>,
     /// When to stop.
     pub stop: Stop,
     /// Pixels, if not the scene's.
@@ -61,7 +59,6 @@ impl RenderOptions {
         Ok(Self {
             output,
             settings: Settings { integrator, params, layers, seed: args.seed },
-            expressions: args.expression.clone(),
             stop: Stop::new(args.spp, args.seconds, args.error),
             size: args.size,
             threads: args.threads,
@@ -75,12 +72,12 @@ impl RenderOptions {
 fn layers(args: &RenderArgs) -> Result<LayerSettings, CliError> {
     let mut expressions = Vec::new();
     for text in &args.expression {
-        let expression = Expression::parse(text)
-            .map_err(|error| CliError::usage(format!("expression \"{text}\": {error}")))?;
+        let expression: Expression =
+            text.parse().map_err(|error: ExpressionError| CliError::usage(error.to_string()))?;
         expressions.push(expression);
     }
     PathClasses::with_components(&expressions)
-        .map_err(|error| CliError::usage(format!("the expressions together: {error}")))?;
+        .map_err(|error| CliError::usage(error.to_string()))?;
     Ok(LayerSettings {
         expressions,
         components: args.components,
