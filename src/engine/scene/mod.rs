@@ -4,7 +4,9 @@
 pub mod build;
 pub mod desc;
 pub mod features;
+pub mod material;
 mod prepared;
+pub mod texture;
 
 pub use desc::SceneDesc;
 pub use features::SceneFeatures;

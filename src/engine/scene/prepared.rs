@@ -3,7 +3,6 @@
 use super::desc::CameraDesc;
 use super::features::SceneFeatures;
 use super::material::Material;
-use super::texture::Textures;
 use crate::engine::bsdf::Bsdf;
 use crate::engine::geometry::{Geometry, Ray, SurfaceInteraction};
 use crate::engine::light::{LightSample, Lights};
@@ -22,8 +21,6 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Names of the materials, by the same index.
     pub material_names: Vec<String>,
-    /// Images and patterns that materials refer to.
-    pub textures: Textures,
     /// Emitters.
     pub lights: Lights,
     /// What the scene holds.
@@ -56,7 +53,7 @@ impl Scene {
     /// decision is uniform again and serves the next.
     fn cross(&self, ray: Ray, mut si: SurfaceInteraction, mut u: f32) -> Option<SurfaceInteraction> {
         for _ in 0..MAX_CROSSINGS {
-            let opacity = self.materials[si.material as usize].opacity(&si, &self.textures);
+            let opacity = self.materials[si.material as usize].opacity(&si);
             if u < opacity {
                 return Some(si);
             }
@@ -88,7 +85,7 @@ impl Scene {
         for _ in 0..MAX_CROSSINGS {
             let Some(hit) = self.geometry.intersect(&ray) else { return transmittance };
             let si = self.geometry.interaction(&ray, &hit);
-            transmittance *= 1.0 - self.materials[si.material as usize].opacity(&si, &self.textures);
+            transmittance *= 1.0 - self.materials[si.material as usize].opacity(&si);
             if transmittance == 0.0 {
                 return 0.0;
             }
@@ -102,6 +99,6 @@ impl Scene {
     /// The scattering at `si`.
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction) -> Bsdf {
-        self.materials[si.material as usize].bsdf(si, &self.textures)
+        self.materials[si.material as usize].bsdf(si)
     }
 }
