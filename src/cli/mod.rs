@@ -1,1 +1,63 @@
-//! The command line.
+//! The command line: raw arguments, then validated values, then the run.
+//!
+//! Results go to standard output, progress and messages to standard error. Exit codes: 0 done,
+//! 1 failed while running, 2 wrong input or usage.
+
+mod args;
+mod bench;
+mod compare;
+mod error;
+mod info;
+mod list;
+mod picture;
+mod print;
+mod render;
+mod scene;
+mod suggest;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Cli, Command};
+use error::CliError;
+
+/// Runs the program on the process's arguments.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Nothing is left to be done where even the message cannot be written.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+        }
+    };
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn run(cli: Cli) -> Result<(), CliError> {
+    match cli.command {
+        Some(Command::Render(args)) => render::run(args),
+        Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::List(args)) => list::run(&args),
+        Some(Command::Info(args)) => info::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args.what),
+        None => window(cli.scene.as_deref()),
+    }
+}
+
+/// Opens the window.
+#[cfg(not(feature = "viewer"))]
+fn window(_scene: Option<&str>) -> Result<(), CliError> {
+    Err(CliError::Failed(
+        "this program was built without the window; `lightscope render SCENE -o OUT.png` renders \
+         without one"
+            .to_owned(),
+    ))
+}

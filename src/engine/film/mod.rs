@@ -8,8 +8,10 @@ pub mod frame;
 pub mod pass_buffer;
 pub mod sample;
 pub mod tiles;
+pub mod tonemap;
 
 pub use accumulator::Film;
 pub use frame::{Frame, FrameLayer};
 pub use pass_buffer::PassBuffer;
 pub use sample::SampleRadiance;
+pub use tonemap::ToneMap;

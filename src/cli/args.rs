@@ -1,0 +1,293 @@
+//! Arguments as they are typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::UVec2;
+
+use crate::engine::film::ToneMap;
+
+use super::suggest::did_you_mean;
+
+/// Renders scenes by global illumination. Without a command it opens the window.
+#[derive(Debug, Parser)]
+#[command(version, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// Scene to open: an id of `lightscope list scenes`, or a file (.toml, .json, .obj).
+    pub scene: Option<String>,
+    /// What to do instead of opening the window.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene into a file.
+    Render(RenderArgs),
+    /// Compare a picture with a reference, layer by layer.
+    Compare(CompareArgs),
+    /// List what there is to choose from.
+    List(ListArgs),
+    /// Say what a scene or a picture holds.
+    Info(InfoArgs),
+    /// Measure how fast this machine renders.
+    Bench(BenchArgs),
+}
+
+/// Arguments of `render`.
+#[derive(Debug, Args)]
+#[command(after_help = "Without --spp, --seconds and --error it computes 64 samples per pixel; \
+                        with several of them it stops at the first one reached.")]
+pub struct RenderArgs {
+    /// Scene: an id of `lightscope list scenes`, or a file (`./NAME` is always a file).
+    pub scene: String,
+    /// Picture to write; the name's end (.exr, .png, .hdr) chooses the format.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Algorithm: an id of `lightscope list integrators`.
+    #[arg(long, value_name = "ID", default_value = "path")]
+    pub integrator: String,
+    /// Parameter of the algorithm; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Path expression such as `L.*DSE`, a layer of its own (EXR); may be repeated.
+    #[arg(long, value_name = "EXPR")]
+    pub expression: Vec<String>,
+    /// Also write the layers direct, specular, caustic and indirect (EXR).
+    #[arg(long)]
+    pub components: bool,
+    /// Leave out the whole picture and compute the layers alone (EXR).
+    #[arg(long)]
+    pub no_whole: bool,
+    /// Stop after this many samples per pixel.
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub spp: Option<u64>,
+    /// Stop after this many seconds.
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
+    pub seconds: Option<f64>,
+    /// Stop when the estimated RMSE divided by the image mean falls to this.
+    #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true)]
+    pub error: Option<f64>,
+    /// Pixels, such as 640x480 [default: what the scene says].
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<UVec2>,
+    /// Threads; 0 is one a core.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threads)]
+    pub threads: usize,
+    /// Seed of all random numbers.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Most scattering events of a path; 0 shows emitters only [default: unlimited].
+    #[arg(long, value_name = "N")]
+    pub max_depth: Option<u32>,
+    /// Exposure of a PNG in stops.
+    #[arg(
+        long, value_name = "EV", default_value_t = 0.0, value_parser = exposure,
+        allow_negative_numbers = true
+    )]
+    pub exposure: f32,
+    /// Tone map of a PNG: linear, reinhard, filmic or agx.
+    #[arg(long, value_name = "ID", default_value = "linear", value_parser = tone_map)]
+    pub tonemap: ToneMap,
+    /// Reference picture; its errors go into the log and the last line.
+    #[arg(long, value_name = "REF.exr")]
+    pub reference: Option<PathBuf>,
+    /// Write a line of JSON a pass: t_wall t_cpu pass spp rays, and rmse relmse nmse against the
+    /// reference.
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub log: Option<PathBuf>,
+    /// Print the final figures as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// The picture.
+    #[arg(value_name = "A")]
+    pub image: PathBuf,
+    /// The reference: a picture, or a folder with ref.exr, direct.exr, …
+    #[arg(value_name = "B")]
+    pub reference: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `list`.
+#[derive(Debug, Args)]
+pub struct ListArgs {
+    /// What to list.
+    pub what: Listing,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What can be listed.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Listing {
+    /// The scenes within the program.
+    Scenes,
+    /// The algorithms and their parameters.
+    Integrators,
+}
+
+/// Arguments of `info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Scene id, scene file or picture (.exr, .png, .hdr).
+    #[arg(value_name = "SCENE|IMAGE")]
+    pub what: String,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// What to measure.
+    #[command(subcommand)]
+    pub what: Bench,
+}
+
+/// What can be measured.
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Time from a change of camera to the first picture.
+    FirstFrame(FirstFrameArgs),
+    /// Error against time on scenes with references, single-threaded.
+    Scenes(BenchScenesArgs),
+}
+
+/// Arguments of `bench first-frame`.
+#[derive(Debug, Args)]
+pub struct FirstFrameArgs {
+    /// Scene: an id or a file.
+    #[arg(long, default_value = super::scene::DEFAULT_SCENE)]
+    pub scene: String,
+    /// Pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    pub size: UVec2,
+    /// Changes of camera.
+    #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one)]
+    pub changes: u64,
+    /// Threads; 0 is one a core.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threads)]
+    pub threads: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench scenes`.
+#[derive(Debug, Args)]
+pub struct BenchScenesArgs {
+    /// Folders with scene.json and ref.exr.
+    #[arg(required = true, value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
+    /// Seconds a scene.
+    #[arg(long, value_name = "T", default_value = "10", value_parser = positive, allow_negative_numbers = true)]
+    pub seconds: f64,
+    /// Algorithm.
+    #[arg(long, value_name = "ID", default_value = "path")]
+    pub integrator: String,
+    /// Parameter of the algorithm; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Sides of pictures, and with them memory, stay within what the formats hold.
+const MAX_SIDE: u32 = 65_536;
+/// Most pixels: about 8192 × 8192.
+const MAX_PIXELS: u64 = 1 << 26;
+/// Most threads; more than any machine has cores.
+const MAX_THREADS: usize = 1024;
+
+fn at_least_one(text: &str) -> Result<u64, String> {
+    match text.parse() {
+        Ok(n) if n >= 1 => Ok(n),
+        _ => Err("it must be a whole number of at least 1".to_owned()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n) if n <= MAX_THREADS => Ok(n),
+        _ => Err(format!("it must be a whole number from 0 (one a core) to {MAX_THREADS}")),
+    }
+}
+
+fn exposure(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(ev) if ev.abs() <= 100.0 => Ok(ev),
+        _ => Err("it must be a number of stops from -100 to 100".to_owned()),
+    }
+}
+
+fn tone_map(text: &str) -> Result<ToneMap, String> {
+    ToneMap::find(text).ok_or_else(|| {
+        let ids = ToneMap::ALL.map(ToneMap::id);
+        format!("it must be one of {}{}", ids.join(", "), did_you_mean(text, ids))
+    })
+}
+
+fn size(text: &str) -> Result<UVec2, String> {
+    let sides = text.split_once(['x', 'X', '×']);
+    let parsed = sides.and_then(|(w, h)| Some(UVec2::new(w.parse().ok()?, h.parse().ok()?)));
+    let Some(size) = parsed else {
+        return Err("it must be width x height, such as 640x480".to_owned());
+    };
+    let pixels = u64::from(size.x) * u64::from(size.y);
+    if pixels == 0 || size.max_element() > MAX_SIDE || pixels > MAX_PIXELS {
+        return Err(format!(
+            "both sides must lie between 1 and {MAX_SIDE}, and the picture may have at most \
+             {MAX_PIXELS} pixels"
+        ));
+    }
+    Ok(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_description_of_the_arguments_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_read_and_bounded() {
+        assert_eq!(size("640x480"), Ok(UVec2::new(640, 480)));
+        assert_eq!(size("1X65536"), Ok(UVec2::new(1, 65_536)));
+        for wrong in ["", "640", "x", "640x", "0x480", "640x-1", "65537x1", "65536x65536", "1e3x2"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_bounded() {
+        assert_eq!((at_least_one("1"), positive("0.5")), (Ok(1), Ok(0.5)));
+        assert!(at_least_one("0").is_err() && at_least_one("-1").is_err());
+        assert!(["0", "-1", "nan", "inf", "x"].iter().all(|t| positive(t).is_err()));
+        assert!(threads("0").is_ok() && threads("1025").is_err());
+        assert!(exposure("-3.5").is_ok() && exposure("NaN").is_err());
+        assert!(tone_map("agx").is_ok());
+        assert!(tone_map("filmc").unwrap_err().contains("did you mean \"filmic\"?"));
+    }
+}

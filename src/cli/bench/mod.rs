@@ -1,0 +1,15 @@
+//! `lightscope bench`: how fast this machine renders.
+
+mod first_frame;
+mod scenes;
+
+use super::args::Bench;
+use super::error::CliError;
+
+/// Runs the command.
+pub fn run(what: &Bench) -> Result<(), CliError> {
+    match what {
+        Bench::FirstFrame(args) => first_frame::run(args),
+        Bench::Scenes(args) => scenes::run(args),
+    }
+}

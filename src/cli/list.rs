@@ -1,0 +1,133 @@
+//! `lightscope list`: what there is to choose from.
+
+use serde::Serialize;
+
+use super::args::{ListArgs, Listing};
+use super::error::CliError;
+use super::{print, scene};
+use crate::engine::integrators::{Entry, ParamKind, ParamSpec, Params, REGISTRY};
+use crate::engine::scene::SceneFeatures;
+
+/// Runs the command.
+pub fn run(args: &ListArgs) -> Result<(), CliError> {
+    match args.what {
+        Listing::Scenes => show(&scene::listed()?, args.json, |_| Vec::new()),
+        Listing::Integrators => {
+            let rows: Vec<Row> = REGISTRY.iter().map(integrator).collect();
+            show(&rows, args.json, details)
+        }
+    }
+}
+
+/// One thing to choose.
+#[derive(Serialize)]
+pub struct Row {
+    /// What is typed.
+    pub id: String,
+    /// What is read.
+    pub label: String,
+    /// One sentence.
+    pub summary: String,
+    /// Parameters, of integrators only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub params: Option<Vec<Param>>,
+    /// Words that cannot be found, of integrators only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub missing: Option<Vec<MissingWords>>,
+}
+
+/// A parameter.
+#[derive(Serialize)]
+pub struct Param {
+    name: &'static str,
+    range: String,
+    default: &'static str,
+    unit: &'static str,
+    doc: &'static str,
+}
+
+/// Words that an integrator cannot find.
+#[derive(Serialize)]
+pub struct MissingWords {
+    /// In which scenes, with which parameters.
+    when: String,
+    words: &'static str,
+    why: &'static str,
+}
+
+fn show(rows: &[Row], json: bool, details: impl Fn(&Row) -> Vec<String>) -> Result<(), CliError> {
+    if json {
+        return print::json(&rows);
+    }
+    let width = rows.iter().map(|row| row.id.len()).max().unwrap_or(0);
+    for row in rows {
+        print::line(&format!("{:width$}  {}: {}", row.id, row.label, row.summary))?;
+        for detail in details(row) {
+            print::line(&format!("{:width$}    {detail}", ""))?;
+        }
+    }
+    Ok(())
+}
+
+fn details(row: &Row) -> Vec<String> {
+    let params = row.params.iter().flatten().map(|p| {
+        format!("--set {}=…  {} (default {}). {}", p.name, p.range, p.default, p.doc)
+    });
+    let missing = row.missing.iter().flatten().map(|m| {
+        format!("cannot find {} with {}: {}", m.words, m.when, m.why)
+    });
+    params.chain(missing).collect()
+}
+
+fn integrator(entry: &Entry) -> Row {
+    Row {
+        id: entry.id.to_owned(),
+        label: entry.label.to_owned(),
+        summary: entry.summary.to_owned(),
+        params: Some(entry.params.iter().map(param).collect()),
+        missing: Some(missing(entry)),
+    }
+}
+
+fn param(spec: &ParamSpec) -> Param {
+    Param {
+        name: spec.name,
+        range: spec.range(),
+        default: spec.default,
+        unit: spec.unit,
+        doc: spec.doc,
+    }
+}
+
+/// What the integrator loses where a light has no size: with its defaults, then with each word of
+/// a choice that makes a difference.
+fn missing(entry: &Entry) -> Vec<MissingWords> {
+    let features = SceneFeatures {
+        diffuse: true,
+        glossy: true,
+        specular: true,
+        zero_size_lights: true,
+        ..SceneFeatures::default()
+    };
+    let defaults = Params::defaults(entry.params);
+    let usual = (entry.missing)(&features, &defaults);
+    let lights = "lights of zero size";
+    let mut rows: Vec<MissingWords> = usual
+        .iter()
+        .map(|m| MissingWords { when: lights.to_owned(), words: m.words, why: m.why })
+        .collect();
+    for spec in entry.params {
+        let ParamKind::Choice(words) = spec.kind else { continue };
+        for word in words {
+            let mut params = defaults.clone();
+            if params.set(entry.params, spec.name, word).is_err() {
+                continue;
+            }
+            if let Some(m) = (entry.missing)(&features, &params).filter(|m| usual.as_ref() != Some(m)) {
+                let when = format!("{lights} and {}={word}", spec.name);
+                rows.push(MissingWords { when, words: m.words, why: m.why });
+            }
+        }
+    }
+    rows
+}

@@ -1,0 +1,123 @@
+//! `lightscope render`: a scene into a file.
+
+mod log;
+mod notes;
+mod options;
+mod progress;
+mod stop;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::UVec2;
+
+use super::args::RenderArgs;
+use super::error::CliError;
+use super::picture::{self, Attributes};
+use super::scene;
+use crate::engine::film::Frame;
+use crate::engine::integrators::{Cancel, Cancelled};
+use crate::engine::measure::Metrics;
+use crate::engine::scene::SceneDesc;
+use crate::engine::session::{RenderClock, RenderJob, Renderer};
+use log::Log;
+pub use options::RenderOptions;
+use progress::Progress;
+use stop::State;
+
+/// Runs the command.
+pub fn run(args: RenderArgs) -> Result<(), CliError> {
+    let options = RenderOptions::new(&args)?;
+    let desc = scene::read(&args.scene)?;
+    let size = options.size.unwrap_or(UVec2::new(desc.camera.width, desc.camera.height));
+    let log = Log::open(args.log.as_deref(), args.reference.as_deref(), size)?;
+    let cancel = cancel_on_interrupt()?;
+    let pool = thread_pool(options.threads)?;
+    let rendered = pool.install(|| render(&options, desc, size, log, &cancel))?;
+    finish(&args, &options, &rendered)
+}
+
+/// A render that is done.
+struct Rendered {
+    frame: Frame,
+    scene: String,
+    interrupted: bool,
+    errors: Option<Metrics>,
+}
+
+fn render(
+    options: &RenderOptions,
+    desc: SceneDesc,
+    size: UVec2,
+    mut log: Log,
+    cancel: &Cancel,
+) -> Result<Rendered, CliError> {
+    let clock = RenderClock::start();
+    let (scene, camera) = scene::build(&desc, size)?;
+    let job = RenderJob { scene, camera, size, settings: options.settings.clone(), navigating: false };
+    let plan = scene::plan(&job)?;
+    notes::print_before(&job, &plan, rayon::current_num_threads());
+    let mut renderer = Renderer::with_plan(&job, plan, clock);
+    let mut progress = Progress::new(&options.stop);
+    let mut interrupted = false;
+    loop {
+        if renderer.render_pass(cancel) == Err(Cancelled) {
+            interrupted = true;
+            break;
+        }
+        log.pass(&mut renderer)?;
+        let state = State::of(&mut renderer, options.stop.error.is_some() || progress.is_due());
+        progress.update(&state);
+        if let Some(note) = options.stop.reached(&state) {
+            progress.clear();
+            eprintln!("done: {note}");
+            break;
+        }
+    }
+    progress.clear();
+    if renderer.passes() == 0 {
+        return Err(CliError::failed("stopped before the first pass was complete; nothing was written"));
+    }
+    renderer.clock().pause();
+    let (frame, errors) = (renderer.frame(), log.finish(&renderer));
+    Ok(Rendered { frame, scene: job.scene.name.clone(), interrupted, errors })
+}
+
+fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Result<(), CliError> {
+    let frame = &rendered.frame;
+    if rendered.interrupted {
+        eprintln!("note: interrupted; the picture holds the {} passes that were complete", frame.passes);
+    }
+    let attributes = Attributes::of(&rendered.scene, options, frame);
+    picture::write(options, frame, &attributes)?;
+    eprintln!("wrote {}", options.output.path.display());
+    notes::print_after(frame, rendered.errors.as_ref());
+    if args.json {
+        super::print::json(&notes::figures(frame, rendered.errors.as_ref()))?;
+    }
+    Ok(())
+}
+
+/// Threads of our own, so that their number is the user's.
+pub(super) fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, CliError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .thread_name(|i| format!("render-{i}"))
+        .build()
+        .map_err(|error| CliError::failed(format!("threads cannot be started: {error}")))
+}
+
+/// A token that Ctrl-C cancels. A second Ctrl-C ends the program at once.
+fn cancel_on_interrupt() -> Result<Cancel, CliError> {
+    let newest = Arc::new(AtomicU64::new(0));
+    let cancel = Cancel::new(Arc::clone(&newest), 0);
+    let handler = move || {
+        if newest.fetch_add(1, Ordering::Relaxed) > 0 {
+            // The customary code of a program that SIGINT ended.
+            std::process::exit(130);
+        }
+    };
+    ctrlc::set_handler(handler)
+        .map_err(|error| CliError::failed(format!("Ctrl-C cannot be caught: {error}")))?;
+    Ok(cancel)
+}

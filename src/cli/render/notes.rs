@@ -1,0 +1,98 @@
+//! What the user is told before and after a render, on standard error.
+
+use serde::Serialize;
+
+use crate::cli::print::figure;
+use crate::cli::scene::parameter_text;
+use crate::engine::film::Frame;
+use crate::engine::integrators::BadSample;
+use crate::engine::measure::Metrics;
+use crate::engine::plan::RenderPlan;
+use crate::engine::session::RenderJob;
+
+/// The job, what its plan leaves out, and what it cannot find.
+pub fn print_before(job: &RenderJob, plan: &RenderPlan, threads: usize) {
+    let settings = &job.settings;
+    let (id, params) = (settings.integrator.id, parameter_text(&settings.params));
+    let (width, height) = (job.size.x, job.size.y);
+    eprintln!(
+        "{}: {width}x{height}, {id} ({params}), seed {}, {threads} threads",
+        job.scene.name, settings.seed
+    );
+    for warning in &job.scene.warnings {
+        eprintln!("warning: {warning}");
+    }
+    for left_out in &plan.left_out {
+        eprintln!("left out: {} ({})", left_out.what, left_out.why);
+    }
+    if let Some(missing) = (settings.integrator.missing)(&job.scene.features, &settings.params) {
+        eprintln!("warning: {id} cannot find {} here: {}", missing.words, missing.why);
+    }
+}
+
+/// Final figures of a render.
+#[derive(Serialize)]
+pub struct Figures {
+    t_wall: f64,
+    t_cpu: f64,
+    spp: u64,
+    rays: u64,
+    mrays_per_second: f64,
+    samples_per_second: f64,
+    /// Estimated RMSE / image mean.
+    error: Option<f64>,
+    non_finite: u64,
+    cut_paths: u64,
+    /// Against the reference.
+    #[serde(flatten)]
+    reference: Option<Metrics>,
+}
+
+/// The figures of a finished frame.
+pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
+    let per_second = 1.0 / frame.t_wall.max(f64::MIN_POSITIVE);
+    Figures {
+        t_wall: frame.t_wall,
+        t_cpu: frame.t_cpu,
+        spp: frame.passes,
+        rays: frame.stats.rays,
+        mrays_per_second: frame.stats.rays as f64 * per_second * 1e-6,
+        samples_per_second: frame.stats.samples as f64 * per_second,
+        error: frame.relative_error,
+        non_finite: frame.stats.non_finite,
+        cut_paths: frame.stats.cut_paths,
+        reference: reference.copied(),
+    }
+}
+
+/// The figures, and what went wrong on the way.
+pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
+    let f = figures(frame, reference);
+    let error = f.error.map_or("unknown".to_owned(), figure);
+    eprintln!(
+        "t_wall {} s, t_cpu {} s, {} spp, {} rays, {} Mrays/s, {} samples/s, error {error}",
+        figure(f.t_wall),
+        figure(f.t_cpu),
+        f.spp,
+        f.rays,
+        figure(f.mrays_per_second),
+        figure(f.samples_per_second),
+    );
+    if let Some(m) = reference {
+        let nmse = m.nmse.map_or("undefined".to_owned(), figure);
+        let (rmse, relmse) = (figure(m.rmse), figure(m.relmse));
+        eprintln!("against the reference: rmse {rmse}, relmse {relmse}, nmse {nmse}");
+    }
+    if f.non_finite > 0 {
+        let first = frame.stats.first_non_finite.map_or_else(String::new, place);
+        eprintln!("warning: {} samples were not finite and were left out{first}", f.non_finite);
+    }
+    if f.cut_paths > 0 {
+        eprintln!("warning: {} paths were cut at the largest number of events", f.cut_paths);
+    }
+}
+
+fn place(sample: BadSample) -> String {
+    let (pixel, pass) = (sample.pixel, sample.pass);
+    format!("; the first in pixel ({}, {}), pass {pass}", pixel.x, pixel.y)
+}
