@@ -192,8 +192,8 @@ fn reciprocal_up_to_the_squared_index() {
                 let (x, y) = (f(a, b), f(b, a));
                 found += u32::from(!x.is_black());
                 for c in 0..3 {
-                    // The facet between two rounded directions is known to about 1e-7/α.
-                    let close = (x[c] - y[c]).abs() <= 1e-3 * x[c].max(y[c]);
+                    // Where f reaches 0 one direction may round to it before the other.
+                    let close = (x[c] - y[c]).abs() <= 1e-3 * x[c].max(y[c]) + 1e-6;
                     assert!(close, "{x:?} {y:?}");
                 }
             }

@@ -57,8 +57,21 @@ impl Interface {
         let (s, p) = (1.0 / (cos + q), 1.0 / (eta_sq * cos + q));
         let r_s = d * s * s;
         let r_p = (d * p) * (((eta_sq + 1.0) * cos * cos - 1.0) * p);
-        let (t_s, t_p) = (cos * s * (q * s), eta_sq * cos * p * (q * p));
-        (0.5 * (r_s * r_s + r_p * r_p), 2.0 * (t_s + t_p))
+        (0.5 * (r_s * r_s + r_p * r_p), self.transmitted(cos, q))
+    }
+
+    /// The transmittance where the far side's cosine `cos_t` is known as well: next to the
+    /// critical angle the near side's alone does not determine it.
+    #[inline]
+    pub fn transmittance(self, cos: f32, cos_t: f32) -> f32 {
+        self.transmitted(cos, self.eta * cos_t)
+    }
+
+    #[inline]
+    fn transmitted(self, cos: f32, q: f32) -> f32 {
+        let eta_sq = self.eta * self.eta;
+        let (s, p) = (1.0 / (cos + q), 1.0 / (eta_sq * cos + q));
+        2.0 * (cos * s * (q * s) + eta_sq * cos * p * (q * p))
     }
 
     /// The refracted direction of `wo` about the unit normal `n` on `wo`'s side; None under
