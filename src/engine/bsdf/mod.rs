@@ -8,3 +8,25 @@
 //! All directions are unit vectors in world space that point away from the surface; `wo` is the
 //! direction already known (toward the eye in a camera walk, toward the light in a light walk),
 //! `wi` the one to find or to evaluate.
+
+mod fresnel;
+mod ggx;
+mod lobe;
+mod scatter;
+mod shares;
+mod view;
+
+pub use fresnel::mean_transmittance;
+pub use ggx::MIN_ALPHA;
+pub use lobe::Lobe;
+pub use scatter::{Bsdf, BsdfSample, MAX_LOBES};
+
+/// Which quantity travels along the path being built: decides the direction of non-symmetric
+/// scattering, which is the 1/η² of refraction and shading normals (Veach 1997, chapter 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transport {
+    /// A camera walk.
+    Radiance,
+    /// A light walk.
+    Importance,
+}
