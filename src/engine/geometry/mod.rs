@@ -1,12 +1,24 @@
 //! Rays, surfaces and where they meet.
+//!
+//! [`Geometry`] holds every triangle and sphere of a scene. Its answers do not depend on how the
+//! hierarchy was built: the closest hit is the one of the smallest `t`, then of the lowest
+//! primitive.
 
 pub mod accel;
+pub mod bounds;
 pub mod interaction;
 pub mod mesh;
 pub mod offset;
 pub mod ray;
 pub mod sphere;
+pub mod surfaces;
+pub mod traverse;
 pub mod triangle;
 
+pub use bounds::Bounds3;
 pub use interaction::SurfaceInteraction;
-pub use ray::Ray;
+pub use mesh::{DropReport, MeshInput};
+pub use offset::offset_origin;
+pub use ray::{Hit, Ray};
+pub use sphere::{Sphere, SphereInput};
+pub use surfaces::Geometry;

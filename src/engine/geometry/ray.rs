@@ -30,3 +30,16 @@ impl Ray {
         self.o + self.d * t
     }
 }
+
+/// Where a ray met the geometry; [`super::Geometry::interaction`] tells the rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray, greater than 0.
+    pub t: f32,
+    /// The triangle or sphere.
+    pub prim: u32,
+    /// Barycentric weight of the triangle's second vertex; 0 for a sphere.
+    pub u: f32,
+    /// Barycentric weight of the triangle's third vertex; 0 for a sphere.
+    pub v: f32,
+}

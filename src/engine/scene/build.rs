@@ -1,0 +1,154 @@
+//! From the authored scene to the one that is rendered.
+
+use glam::{Affine3A, Vec3, Vec3A};
+
+use super::desc::{MeshDesc, SceneDesc};
+use super::features::SceneFeatures;
+use super::material::{Features, Material};
+use super::prepared::Scene;
+use super::texture::Texture;
+use crate::engine::geometry::{DropReport, Geometry, MeshInput, SphereInput};
+use crate::engine::light::{Emitter, Lights};
+
+impl Scene {
+    /// Prepares a scene: builds materials, the acceleration structure and the lights.
+    ///
+    /// # Errors
+    /// A sentence that says which part cannot be used and what would be right.
+    pub fn build(desc: &SceneDesc) -> Result<Self, String> {
+        let count = desc.materials.len();
+        let materials: Vec<Material> =
+            (0..count).map(|i| Material::build(i, &desc.materials)).collect::<Result<_, _>>()?;
+
+        let world: Vec<WorldMesh> = desc.meshes.iter().map(WorldMesh::new).collect();
+        let meshes: Vec<MeshInput<'_>> =
+            desc.meshes.iter().zip(&world).map(|(d, w)| w.input(d)).collect();
+        let spheres: Vec<SphereInput> = desc.spheres.iter().map(sphere_input).collect();
+        let (mut geometry, dropped) = Geometry::build(&meshes, &spheres);
+
+        let emitters = emitters(desc, &geometry)?;
+        let lights = Lights::build(&desc.lights, &emitters, &geometry)?;
+        geometry.set_lights(|prim| lights.of_primitive(prim));
+
+        let mut warnings = desc.warnings.clone();
+        warnings.extend(describe_dropped(&dropped));
+        let features = features(desc, &materials, &lights);
+        if !features.hittable_lights && !features.zero_size_lights {
+            warnings.push("nothing in this scene emits light, so the picture is black".to_owned());
+        }
+        Ok(Self {
+            name: desc.name.clone(),
+            description: desc.description.clone(),
+            camera: desc.camera,
+            geometry,
+            materials,
+            material_names: desc.materials.iter().map(|m| m.name.clone()).collect(),
+            lights,
+            features,
+            warnings,
+        })
+    }
+}
+
+/// The vertices of a mesh in world space, where they differ from the authored ones.
+struct WorldMesh {
+    positions: Option<Vec<Vec3>>,
+    normals: Option<Vec<Vec3>>,
+    triangles: Option<Vec<[u32; 3]>>,
+}
+
+impl WorldMesh {
+    fn new(desc: &MeshDesc) -> Self {
+        let Some(transform) = desc.transform else {
+            return Self { positions: None, normals: None, triangles: None };
+        };
+        let positions = desc.positions.iter().map(|p| transform.transform_point3(*p)).collect();
+        let normals = desc.normals.iter().map(|n| transform_normal(&transform, *n)).collect();
+        // A reflection turns the order of the vertices; the front stays the front.
+        let mirrored = transform.matrix3.determinant() < 0.0;
+        let turned = || desc.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        Self {
+            positions: Some(positions),
+            normals: Some(normals),
+            triangles: mirrored.then(turned),
+        }
+    }
+
+    fn input<'a>(&'a self, desc: &'a MeshDesc) -> MeshInput<'a> {
+        MeshInput {
+            positions: self.positions.as_deref().unwrap_or(&desc.positions),
+            normals: self.normals.as_deref().unwrap_or(&desc.normals),
+            uvs: &desc.uvs,
+            triangles: self.triangles.as_deref().unwrap_or(&desc.triangles),
+            material: desc.material as u32,
+        }
+    }
+}
+
+/// Normals go with the cofactor matrix, the inverse transpose up to a factor: it exists for
+/// singular transforms too.
+fn transform_normal(transform: &Affine3A, n: Vec3) -> Vec3 {
+    let m = transform.matrix3;
+    let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
+    let n = Vec3A::from(n);
+    let cofactor = y.cross(z) * n.x + z.cross(x) * n.y + x.cross(y) * n.z;
+    Vec3::from(cofactor * m.determinant().signum())
+}
+
+fn sphere_input(desc: &super::desc::SphereDesc) -> SphereInput {
+    SphereInput {
+        center: desc.center,
+        radius: desc.radius,
+        inward: desc.inward,
+        material: desc.material as u32,
+    }
+}
+
+/// Every primitive that emits, with what it emits.
+fn emitters(desc: &SceneDesc, geometry: &Geometry) -> Result<Vec<Emitter>, String> {
+    let mut emitters = Vec::new();
+    for (index, mesh) in desc.meshes.iter().enumerate() {
+        let Some(emission) = &mesh.emission else { continue };
+        let radiance =
+            Texture::build(emission).map_err(|e| format!("mesh \"{}\": {e}", mesh.name))?;
+        let prims = geometry.mesh_triangles(index);
+        emitters.extend(prims.map(|prim| Emitter { prim, radiance: radiance.clone() }));
+    }
+    for (index, sphere) in desc.spheres.iter().enumerate() {
+        let (Some(radiance), Some(prim)) = (sphere.emission, geometry.sphere_prim(index)) else {
+            continue;
+        };
+        emitters.push(Emitter { prim, radiance: Texture::Constant(radiance) });
+    }
+    Ok(emitters)
+}
+
+fn describe_dropped(dropped: &DropReport) -> Option<String> {
+    let reasons = [
+        (dropped.bad_index, "triangles that name a vertex that is not there"),
+        (dropped.non_finite, "triangles with coordinates that are no numbers"),
+        (dropped.out_of_range, "triangles with coordinates beyond 1e18"),
+        (dropped.zero_area, "triangles without area"),
+        (dropped.invalid_sphere, "spheres whose centre or radius cannot be used"),
+    ];
+    let list: Vec<String> =
+        reasons.iter().filter(|r| r.0 > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    (!list.is_empty()).then(|| format!("left out: {}", list.join(", ")))
+}
+
+/// What the materials on surfaces and the lights can do; a material that nothing wears counts not.
+fn features(desc: &SceneDesc, materials: &[Material], lights: &Lights) -> SceneFeatures {
+    let on_meshes = desc.meshes.iter().map(|m| m.material);
+    let worn = on_meshes.chain(desc.spheres.iter().map(|s| s.material));
+    let all = worn.fold(Features::NONE, |all, m| all.union(materials[m].features()));
+    SceneFeatures {
+        diffuse: all.contains(Features::DIFFUSE),
+        glossy: all.contains(Features::GLOSSY),
+        specular: all.contains(Features::SPECULAR),
+        opacity: all.contains(Features::TRANSPARENT),
+        textures: all.contains(Features::TEXTURED),
+        hittable_lights: lights.iter().any(|l| !l.is_delta()),
+        zero_size_lights: lights.iter().any(|l| l.is_delta()),
+        environment: !lights.environments().is_empty(),
+    }
+}
