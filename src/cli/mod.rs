@@ -18,7 +18,7 @@ mod suggest;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use args::{Cli, Command};
 use error::CliError;
@@ -49,8 +49,18 @@ fn run(cli: Cli) -> Result<(), CliError> {
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args.what),
-        None => window(cli.scene.as_deref()),
+        None => {
+            let name = cli.scene.as_deref();
+            window(name.map(check_name).transpose()?)
+        }
     }
+}
+
+/// A word that stands alone is a scene; a mistyped command ends here too.
+fn check_name(name: &str) -> Result<&str, CliError> {
+    let commands = Cli::command();
+    let commands: Vec<&str> = commands.get_subcommands().map(clap::Command::get_name).collect();
+    scene::check_exists(name, &commands).map(|()| name)
 }
 
 /// Opens the window.

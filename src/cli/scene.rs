@@ -24,16 +24,21 @@ pub fn read(name: &str) -> Result<SceneDesc, CliError> {
     if is_embedded(name) {
         return embedded::read(name).map_err(|error| CliError::usage(error.to_string()));
     }
-    let path = Path::new(name);
-    if !path.exists() {
-        let ids = embedded::all().iter().map(|scene| scene.id);
-        let hint = did_you_mean(name, ids);
-        return Err(CliError::usage(format!(
-            "there is no scene and no file \"{name}\"{hint}; `lightscope list scenes` names the \
-             scenes"
-        )));
+    check_exists(name, &[])?;
+    read_file(Path::new(name))
+}
+
+/// Fails with a sentence if `name` is neither a scene nor a file; the suggestion may be one of
+/// `others` too.
+pub fn check_exists(name: &str, others: &[&str]) -> Result<(), CliError> {
+    if is_embedded(name) || Path::new(name).exists() {
+        return Ok(());
     }
-    read_file(path)
+    let ids = embedded::all().iter().map(|scene| scene.id);
+    let hint = did_you_mean(name, ids.chain(others.iter().copied()));
+    Err(CliError::usage(format!(
+        "there is no scene and no file \"{name}\"{hint}; `lightscope list scenes` names the scenes"
+    )))
 }
 
 /// True if `name` is the id of an embedded scene.
