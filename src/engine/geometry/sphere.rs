@@ -62,7 +62,7 @@ impl Sphere {
         let b = o.dot(d);
         let perpendicular = o - d * (b / a);
         let discriminant = (r * r - perpendicular.length_squared()) * a;
-        if !(discriminant >= 0.0) {
+        if discriminant.is_nan() || discriminant < 0.0 {
             return None;
         }
         // One root by the sum that does not cancel, the other by Vieta.

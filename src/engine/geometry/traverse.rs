@@ -77,6 +77,7 @@ impl Child {
 
 /// Four boxes, `planes[axis][lower or upper][child]`. An unused child has an empty box.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub struct Node {
     planes: [[Vec4; 2]; 3],
     children: [Child; WIDTH],
