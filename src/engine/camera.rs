@@ -183,7 +183,7 @@ impl Camera {
     #[inline]
     fn project(&self, lens: Vec2, d: Vec3A) -> Option<Vec2> {
         let z = d.dot(self.forward);
-        if !(z > 0.0) {
+        if z <= 0.0 {
             return None;
         }
         let slope = Vec2::new(d.dot(self.right), d.dot(self.up)) / z;
