@@ -185,7 +185,7 @@ impl Camera {
     #[inline]
     fn project(&self, lens: Vec2, d: Vec3A) -> Option<Vec2> {
         let z = d.dot(self.forward);
-        if !(z > 0.0) {
+        if z <= 0.0 {
             return None;
         }
         let slope = Vec2::new(d.dot(self.right), d.dot(self.up)) / z;
@@ -250,5 +250,156 @@ impl Camera {
             pdf_dir: distance / (cos * self.lens_area()) * distance,
             n: self.forward,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::engine::sampling::{IndependentSampler, Sampler, Stream};
+    use crate::engine::scene::desc::LensDesc;
+
+    fn desc(lens: Option<LensDesc>) -> CameraDesc {
+        CameraDesc {
+            position: Vec3::new(1.0, 2.0, 3.0),
+            target: Vec3::new(1.0, 2.0, -4.0),
+            up: Vec3::Y,
+            vfov_deg: 60.0,
+            width: 40,
+            height: 20,
+            lens,
+        }
+    }
+
+    fn cameras() -> [Camera; 2] {
+        let lens = LensDesc {
+            radius: 0.3,
+            focus_distance: 2.0,
+        };
+        [None, Some(lens)].map(|lens| Camera::new(&desc(lens)).unwrap())
+    }
+
+    fn sampler(index: u64) -> IndependentSampler {
+        IndependentSampler::new(3, Stream::Test, (0, index))
+    }
+
+    #[test]
+    fn top_left_is_up_and_left_and_the_opening_is_vertical() {
+        let camera = cameras()[0];
+        let centre = camera.generate_ray(Vec2::new(20.0, 10.0), Vec2::ZERO);
+        assert!((centre.d - Vec3A::NEG_Z).length() < 1e-6);
+        let top = camera.generate_ray(Vec2::new(20.0, 0.0), Vec2::ZERO);
+        assert!((top.d.angle_between(centre.d).to_degrees() - 30.0).abs() < 1e-3);
+        let corner = camera.generate_ray(Vec2::ZERO, Vec2::ZERO).d;
+        assert!(corner.x < 0.0 && corner.y > 0.0);
+        assert!(
+            (corner.x / corner.y + 2.0).abs() < 1e-5,
+            "pixels are square"
+        );
+    }
+
+    #[test]
+    fn rays_find_their_film_position_again() {
+        for camera in cameras() {
+            for i in 0..1000 {
+                let mut s = sampler(i);
+                let film = s.next_2d() * camera.size;
+                let ray = camera.generate_ray(film, s.next_2d());
+                let (importance, found) = camera.we(&ray).unwrap();
+                assert!((found - film).length() < 1e-3, "{film} {found}");
+                let (pdf_pos, pdf_dir) = camera.pdf_we(&ray);
+                // The weight of a camera ray: We cosθ / (pdf_pos · pdf_dir) = 1.
+                let cos = ray.d.dot(camera.forward());
+                let weight = importance * cos / (pdf_pos * pdf_dir);
+                assert!((weight - 1.0).abs() < 1e-5, "{weight}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_lens_is_sharp_in_its_plane_of_focus() {
+        let camera = cameras()[1];
+        let film = Vec2::new(3.0, 17.0);
+        let at = |u: Vec2| {
+            let ray = camera.generate_ray(film, u);
+            ray.at(2.0 / ray.d.dot(camera.forward()))
+        };
+        for i in 0..100 {
+            let u = sampler(i).next_2d();
+            assert!(at(u).distance(at(Vec2::splat(0.5))) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_shining_wall_has_its_radiance_seen_from_either_end() {
+        // Light sampled on a wall z = −1, 4 m away, larger than the picture, radiance 1: all
+        // contributions together are the mean over the film, which is 1.
+        for camera in cameras() {
+            let (half, n) = (Vec2::new(8.0, 5.0), 400_000);
+            let area = 4.0 * half.x * half.y;
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for i in 0..n {
+                let mut s = sampler(i);
+                let xy = (2.0 * s.next_2d() - Vec2::ONE) * half;
+                let p = Vec3A::new(1.0 + xy.x, 2.0 + xy.y, -1.0);
+                let Some(sample) = camera.sample_wi(p, s.next_2d()) else {
+                    continue;
+                };
+                assert!((p + sample.wi * sample.distance).distance(sample.target) < 1e-5);
+                let x = sample.importance / sample.pdf_dir * sample.wi.z * area;
+                sum += f64::from(x);
+                squares += f64::from(x).powi(2);
+            }
+            let mean = sum / n as f64;
+            let error = ((squares / n as f64 - mean * mean) / n as f64).sqrt();
+            assert!(
+                error < 0.005 && (mean - 1.0).abs() < 5.0 * error,
+                "{mean} ± {error}"
+            );
+        }
+    }
+
+    #[test]
+    fn views_without_meaning_are_refused() {
+        let good = desc(None);
+        let lens = |radius, focus_distance| {
+            Some(LensDesc {
+                radius,
+                focus_distance,
+            })
+        };
+        let bad = [
+            CameraDesc { width: 0, ..good },
+            CameraDesc {
+                vfov_deg: 180.0,
+                ..good
+            },
+            CameraDesc {
+                vfov_deg: f32::NAN,
+                ..good
+            },
+            CameraDesc {
+                target: good.position,
+                ..good
+            },
+            CameraDesc {
+                up: Vec3::Z,
+                ..good
+            },
+            CameraDesc {
+                up: Vec3::NAN,
+                ..good
+            },
+            desc(lens(0.0, 1.0)),
+            desc(lens(1.0, f32::INFINITY)),
+        ];
+        for desc in bad {
+            assert!(Camera::new(&desc).is_err(), "{desc:?}");
+        }
+        let wide = cameras()[0].with_size(1, 16_384).unwrap();
+        assert_eq!(wide.size(), (1, 16_384));
+        assert_eq!(wide.desc().vfov_deg, 60.0);
     }
 }

@@ -108,7 +108,7 @@ impl Lights {
 
     /// Adds a light that has power.
     fn add(&mut self, light: Light) -> Option<u32> {
-        if !(importance(&light) > 0.0) {
+        if importance(&light) <= 0.0 {
             return None;
         }
         let id = self.lights.len() as u32;
@@ -191,6 +191,10 @@ impl Lights {
 /// `f32` where that overflows.
 fn importance(light: &Light) -> f64 {
     let sum: f64 = light.power().to_array().iter().map(|c| f64::from(*c)).sum();
+    // Black light on an area beyond f32 is 0 · ∞.
+    if sum.is_nan() {
+        return 0.0;
+    }
     (sum / 3.0).min(f64::from(f32::MAX))
 }
 

@@ -61,7 +61,7 @@ impl SphereLight {
         let to = self.center - p;
         let distance = to.length();
         let tangent2 = (distance - self.radius) * (distance + self.radius);
-        if !(tangent2 > 0.0) {
+        if tangent2 <= 0.0 {
             return None;
         }
         // 1 − cosθ = sin²θ / (1 + cosθ) keeps its digits where the cone is narrow.
