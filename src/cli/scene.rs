@@ -68,14 +68,14 @@ pub fn listed() -> Result<Vec<Row>, CliError> {
 
 /// Prepares a scene, and its camera for a picture of `size` pixels.
 pub fn build(desc: &SceneDesc, size: UVec2) -> Result<(Arc<Scene>, Camera), CliError> {
-    let scene = Scene::build(desc).map_err(|error| CliError::usage(error.to_string()))?;
-    let camera = camera(&scene.camera, size);
+    let scene = Scene::build(desc).map_err(CliError::Usage)?;
+    let camera = camera(&scene.camera, size)?;
     Ok((Arc::new(scene), camera))
 }
 
 /// A camera for a picture of `size` pixels.
-pub fn camera(desc: &CameraDesc, size: UVec2) -> Camera {
-    Camera::new(desc).with_size(size)
+pub fn camera(desc: &CameraDesc, size: UVec2) -> Result<Camera, CliError> {
+    Ok(Camera::new(desc).map_err(CliError::Usage)?.with_size(size))
 }
 
 /// What a job needs computed.

@@ -79,7 +79,7 @@ fn measure(args: &FirstFrameArgs) -> Result<Vec<f64>, CliError> {
     let mut times = Vec::new();
     // The first picture of all knows nothing of the machine's speed and is not counted.
     for change in 0..=args.changes {
-        job.camera = scene::camera(&turned(&desc.camera, change as f32 * STEP), args.size);
+        job.camera = scene::camera(&turned(&desc.camera, change as f32 * STEP), args.size)?;
         let start = Instant::now();
         let epoch = session.submit(job.clone());
         wait_for(&session, epoch, &woken)?;
