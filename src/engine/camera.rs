@@ -1,1 +1,252 @@
-//! Cameras.
+//! Perspective cameras: pinhole and thin lens.
+//!
+//! A picture is a rectangle at distance 1 before the lens; its position (0, 0) is the top left
+//! corner and one unit is a pixel. A pixel is the mean radiance over its square and over the lens,
+//! so a camera ray has the weight 1. Seen from the light, the same camera has an importance We,
+//! normalised over the whole picture: ∫∫ We cosθ dω dA = 1 (*Physically Based Rendering*, 3rd ed.,
+//! 16.1.1). A light path that reaches the film contributes We-weighted flux to one pixel; with N
+//! paths in all, a pixel is (width · height / N) times the sum of its contributions.
+
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3A};
+
+use super::geometry::Ray;
+use super::sampling::warp::sample_unit_disk;
+use super::scene::desc::CameraDesc;
+
+/// A camera, ready to use.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    desc: CameraDesc,
+    position: Vec3A,
+    right: Vec3A,
+    up: Vec3A,
+    forward: Vec3A,
+    /// Half the picture's size at distance 1.
+    half: Vec2,
+    /// Film size in pixels.
+    size: Vec2,
+    lens_radius: f32,
+    focus_distance: f32,
+}
+
+/// A point of the lens as seen from a point of the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraSample {
+    /// Unit direction from the reference point to the lens.
+    pub wi: Vec3A,
+    /// The point of the lens: end of the shadow ray.
+    pub target: Vec3A,
+    /// Distance to it.
+    pub distance: f32,
+    /// Where on the film, in pixels.
+    pub film: Vec2,
+    /// Importance We in m⁻² sr⁻¹ (pinhole: sr⁻¹, for its one point).
+    pub importance: f32,
+    /// Density of `wi` in 1/sr at the reference point; importance / `pdf_dir` is the factor on
+    /// f · cosθ · radiance there.
+    pub pdf_dir: f32,
+    /// Normal of the lens: the view direction.
+    pub n: Vec3A,
+}
+
+impl Camera {
+    /// Checks and prepares a camera.
+    ///
+    /// # Errors
+    /// A sentence, if the picture has no pixels or the view makes no sense.
+    pub fn new(desc: &CameraDesc) -> Result<Self, String> {
+        if desc.width == 0 || desc.height == 0 {
+            return Err(format!(
+                "A picture of {} × {} pixels is empty.",
+                desc.width, desc.height
+            ));
+        }
+        let vectors = [desc.position, desc.target, desc.up];
+        if !vectors.iter().all(|v| v.is_finite()) {
+            return Err("The camera's position, target or up direction is not finite.".into());
+        }
+        if !(desc.vfov_deg > 0.0 && desc.vfov_deg < 180.0) {
+            return Err(format!(
+                "The camera's opening angle of {}° is not between 0 and 180.",
+                desc.vfov_deg
+            ));
+        }
+        let (lens_radius, focus_distance) = desc
+            .lens
+            .map_or((0.0, 1.0), |lens| (lens.radius, lens.focus_distance));
+        let positive = |x: f32| x.is_finite() && x > 0.0;
+        if desc.lens.is_some() && !(positive(lens_radius) && positive(focus_distance)) {
+            return Err("A lens needs a radius and a focus distance above 0.".into());
+        }
+        let forward = (desc.target.as_dvec3() - desc.position.as_dvec3())
+            .try_normalize()
+            .ok_or("The camera's target is its own position.")?;
+        let up = desc.up.as_dvec3().try_normalize();
+        let right = up
+            .and_then(|up| forward.cross(up).try_normalize())
+            .ok_or("The camera's up direction is its view direction.")?;
+        let tan = (0.5 * f64::from(desc.vfov_deg).to_radians()).tan();
+        let aspect = f64::from(desc.width) / f64::from(desc.height);
+        Ok(Self {
+            desc: *desc,
+            position: desc.position.into(),
+            right: right.as_vec3a(),
+            up: right.cross(forward).as_vec3a(),
+            forward: forward.as_vec3a(),
+            half: Vec2::new((tan * aspect) as f32, tan as f32),
+            size: Vec2::new(desc.width as f32, desc.height as f32),
+            lens_radius,
+            focus_distance,
+        })
+    }
+
+    /// The same view, vertical opening included, with another number of pixels.
+    ///
+    /// # Errors
+    /// A sentence, if the picture has no pixels.
+    pub fn with_size(&self, width: u32, height: u32) -> Result<Self, String> {
+        Self::new(&CameraDesc {
+            width,
+            height,
+            ..self.desc
+        })
+    }
+
+    /// What it was made from.
+    pub fn desc(&self) -> &CameraDesc {
+        &self.desc
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.desc.width, self.desc.height)
+    }
+
+    /// Unit view direction, the normal of the lens.
+    pub fn forward(&self) -> Vec3A {
+        self.forward
+    }
+
+    /// Whether all rays pass one point.
+    pub fn is_pinhole(&self) -> bool {
+        self.lens_radius == 0.0
+    }
+
+    /// The ray that the film position `film` sees through the point `u_lens` of the lens; its
+    /// weight is 1.
+    #[inline]
+    pub fn generate_ray(&self, film: Vec2, u_lens: Vec2) -> Ray {
+        let x = (2.0 * film.x / self.size.x - 1.0) * self.half.x;
+        let y = (1.0 - 2.0 * film.y / self.size.y) * self.half.y;
+        let lens = self.lens_point(u_lens);
+        // Through the point in focus, all in the camera's own coordinates: far from the origin
+        // the position has few digits left.
+        let shift = lens / self.focus_distance;
+        let d = self.forward + self.right * (x - shift.x) + self.up * (y - shift.y);
+        Ray::new(self.world_from_lens(lens), d.normalize())
+    }
+
+    #[inline]
+    fn lens_point(&self, u: Vec2) -> Vec2 {
+        if self.is_pinhole() {
+            Vec2::ZERO
+        } else {
+            sample_unit_disk(u) * self.lens_radius
+        }
+    }
+
+    #[inline]
+    fn world_from_lens(&self, lens: Vec2) -> Vec3A {
+        self.position + self.right * lens.x + self.up * lens.y
+    }
+
+    /// Area of the picture at distance 1 from the lens.
+    #[inline]
+    fn film_area(&self) -> f32 {
+        4.0 * self.half.x * self.half.y
+    }
+
+    /// Area of the lens; 1 for a pinhole, which counts as a delta.
+    #[inline]
+    fn lens_area(&self) -> f32 {
+        if self.is_pinhole() {
+            1.0
+        } else {
+            PI * self.lens_radius * self.lens_radius
+        }
+    }
+
+    /// The film position that sees along the unit direction `d` from the point `lens` of the
+    /// lens, in the camera's plane; `None` if it is off the film.
+    #[inline]
+    fn project(&self, lens: Vec2, d: Vec3A) -> Option<Vec2> {
+        let z = d.dot(self.forward);
+        if !(z > 0.0) {
+            return None;
+        }
+        let slope = Vec2::new(d.dot(self.right), d.dot(self.up)) / z;
+        let at_one = (slope + lens / self.focus_distance) / self.half;
+        let film = Vec2::new(0.5 + 0.5 * at_one.x, 0.5 - 0.5 * at_one.y) * self.size;
+        let inside = film.cmpge(Vec2::ZERO).all() && film.cmplt(self.size).all();
+        inside.then_some(film)
+    }
+
+    /// Importance of the direction at the cosine `cos` to the view direction.
+    #[inline]
+    fn importance(&self, cos: f32) -> f32 {
+        let cos2 = cos * cos;
+        1.0 / (self.film_area() * self.lens_area() * cos2 * cos2)
+    }
+
+    /// Position on the lens of a point near it.
+    #[inline]
+    fn lens_from_world(&self, p: Vec3A) -> Vec2 {
+        if self.is_pinhole() {
+            return Vec2::ZERO;
+        }
+        let from = p - self.position;
+        Vec2::new(from.dot(self.right), from.dot(self.up))
+    }
+
+    /// Importance We of a ray that leaves the lens, and its film position; `None` off the film.
+    #[inline]
+    pub fn we(&self, ray: &Ray) -> Option<(f32, Vec2)> {
+        let film = self.project(self.lens_from_world(ray.o), ray.d)?;
+        Some((self.importance(ray.d.dot(self.forward)), film))
+    }
+
+    /// Densities `(pdf_pos, pdf_dir)` with which [`Camera::generate_ray`] draws a ray from a
+    /// uniform film position: 1/m² on the lens (1 for a pinhole) and 1/sr; 0 off the film.
+    #[inline]
+    pub fn pdf_we(&self, ray: &Ray) -> (f32, f32) {
+        let pdf_pos = 1.0 / self.lens_area();
+        if self.project(self.lens_from_world(ray.o), ray.d).is_none() {
+            return (pdf_pos, 0.0);
+        }
+        let cos = ray.d.dot(self.forward);
+        (pdf_pos, 1.0 / (self.film_area() * cos * cos * cos))
+    }
+
+    /// Samples the lens as seen from `p`; `None` if `p` is not in the picture.
+    #[inline]
+    pub fn sample_wi(&self, p: Vec3A, u: Vec2) -> Option<CameraSample> {
+        let lens = self.lens_point(u);
+        let target = self.world_from_lens(lens);
+        let to = target - p;
+        let distance = to.length();
+        let wi = to / distance;
+        let film = self.project(lens, -wi)?;
+        let cos = -wi.dot(self.forward);
+        Some(CameraSample {
+            wi,
+            target,
+            distance,
+            film,
+            importance: self.importance(cos),
+            pdf_dir: distance / (cos * self.lens_area()) * distance,
+            n: self.forward,
+        })
+    }
+}

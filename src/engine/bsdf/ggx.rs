@@ -113,7 +113,7 @@ pub fn dielectric(
     if cos_o <= 0.0 || cos_i >= 0.0 {
         return (0.0, 0.0);
     }
-    let (_, t) = interface.fresnel(cos_o.min(1.0));
+    let t = interface.transmittance(cos_o, -cos_i);
     // The Jacobian η²|wi·m| / (wo·m + η wi·m)² (eq. 17), whose denominator is |h|².
     let visible = distribution(alpha, m) * shadowing_over_cos(alpha, wo) * cos_o;
     let pdf_over_eta_sq = visible * t * (-cos_i / length_sq);

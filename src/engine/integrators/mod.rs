@@ -17,7 +17,7 @@ use crate::engine::film::Film;
 use crate::engine::scene::features::SceneFeatures;
 
 /// One algorithm, prepared for one job.
-pub trait Integrator: Send {
+pub trait Integrator: Send + Sync {
     /// Computes one pass, one more sample of every pixel, and adds it to `film`.
     ///
     /// # Errors

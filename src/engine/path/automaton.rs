@@ -1,230 +1,246 @@
-//! A minimal deterministic automaton over the four letters for several expressions at once.
+//! From a syntax tree to its minimal deterministic automaton: the positions that may follow each
+//! other (Glushkov 1961, *The Abstract Theory of Automata*), the subset construction over them
+//! (Rabin and Scott 1959, *Finite Automata and Their Decision Problems*), and the partition
+//! refinement of Moore 1956, *Gedanken-experiments on Sequential Machines*.
 
 use std::collections::HashMap;
 
-use super::expression::Node;
+use super::class::MAX_CLASSES;
+use super::expression::{MAX_EVENTS, Node};
+use crate::engine::event::Letter;
+
+/// Most states before the automaton is minimised.
+const MAX_SUBSETS: usize = 4096;
 
 /// Letters of the alphabet.
-pub(super) const LETTERS: usize = 4;
-/// Most event positions of all expressions together, repetitions unrolled.
-const MAX_POSITIONS: usize = 2000;
-/// Most states before minimisation.
-const MAX_STATES: usize = 4000;
+pub(super) const LETTERS: usize = Letter::ALL.len();
+/// Something for each letter.
+pub(super) type Row<T> = [T; LETTERS];
 
-/// State 0 is the start. Every state has a successor for every letter.
-#[derive(Clone, Debug)]
+/// A minimal and complete automaton; it starts in state 0.
+#[derive(Debug)]
 pub(super) struct Automaton {
-    /// Successors.
-    pub next: Vec<[u16; LETTERS]>,
-    /// Bit i: the word read so far is in expression i.
-    pub accepts: Vec<u32>,
+    pub(super) next: Vec<Row<u8>>,
+    pub(super) accepting: Vec<bool>,
 }
 
-/// The expressions are too large to be tabulated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct TooLarge;
+/// The automaton has more states than there may be classes.
+#[derive(Debug)]
+pub(super) struct TooManyStates;
 
-/// Positions of letters that may come first and last, and whether the empty word belongs
-/// (Glushkov 1961).
-struct Ends {
-    empty: bool,
-    first: Vec<usize>,
-    last: Vec<usize>,
+impl Automaton {
+    pub(super) fn new(node: &Node) -> Result<Self, TooManyStates> {
+        let (next, accepting) = Positions::new(node).determinise()?;
+        minimise(&next, &accepting)
+    }
 }
 
+/// A set of positions, that is, of places where an event is named in the written-out expression.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct Set([u64; MAX_EVENTS / 64]);
+
+impl Set {
+    fn insert(&mut self, position: usize) {
+        self.0[position / 64] |= 1 << (position % 64);
+    }
+
+    fn unite(&mut self, other: &Self) {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a |= b;
+        }
+    }
+
+    fn meet(&self, other: &Self) -> Self {
+        let mut both = *self;
+        for (a, b) in both.0.iter_mut().zip(other.0) {
+            *a &= b;
+        }
+        both
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.iter().all(|&word| word == 0)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..MAX_EVENTS / 64).flat_map(|index| {
+            let mut word = self.0[index];
+            std::iter::from_fn(move || {
+                let bit = (word != 0).then(|| word.trailing_zeros() as usize)?;
+                word &= word - 1;
+                Some(64 * index + bit)
+            })
+        })
+    }
+}
+
+/// What a part of the tree shows to its neighbours.
+#[derive(Clone, Copy, Default)]
+struct Fragment {
+    /// Whether the empty word matches.
+    nullable: bool,
+    /// Positions that a match may start with.
+    first: Set,
+    /// Positions that a match may end with.
+    last: Set,
+}
+
+/// Glushkov's automaton.
 #[derive(Default)]
 struct Positions {
-    /// Letters allowed at each position, as a mask.
-    letters: Vec<u8>,
-    follow: Vec<Vec<usize>>,
+    /// Which positions match each letter.
+    of_letter: Row<Set>,
+    /// Which positions may come after each.
+    follow: Vec<Set>,
+    root: Fragment,
 }
 
 impl Positions {
-    fn add(&mut self, node: &Node) -> Result<Ends, TooLarge> {
+    fn new(root: &Node) -> Self {
+        let mut positions = Self::default();
+        positions.root = positions.add(root);
+        positions
+    }
+
+    fn add(&mut self, node: &Node) -> Fragment {
+        let empty = Fragment {
+            nullable: true,
+            ..Fragment::default()
+        };
         match node {
-            Node::Empty => Ok(Ends { empty: true, first: vec![], last: vec![] }),
-            Node::Letters(mask) => {
-                if self.letters.len() >= MAX_POSITIONS {
-                    return Err(TooLarge);
-                }
-                let p = self.letters.len();
-                self.letters.push(*mask);
-                self.follow.push(Vec::new());
-                Ok(Ends { empty: false, first: vec![p], last: vec![p] })
-            }
-            Node::Sequence(parts) => {
-                let mut ends = Ends { empty: true, first: vec![], last: vec![] };
-                for part in parts {
-                    let next = self.add(part)?;
-                    ends = self.concatenate(ends, next);
-                }
-                Ok(ends)
-            }
-            Node::Union(branches) => {
-                let mut ends = Ends { empty: false, first: vec![], last: vec![] };
-                for branch in branches {
-                    let next = self.add(branch)?;
-                    ends.empty |= next.empty;
-                    ends.first.extend(next.first);
-                    ends.last.extend(next.last);
-                }
-                Ok(ends)
-            }
-            Node::Repeat { node, min, max } => self.repeat(node, *min, *max),
-        }
-    }
-
-    /// Unrolls: x{m,n} is m copies and n − m optional ones; x{m,} ends in a starred copy.
-    fn repeat(&mut self, node: &Node, min: u32, max: Option<u32>) -> Result<Ends, TooLarge> {
-        let mut ends = Ends { empty: true, first: vec![], last: vec![] };
-        if !has_letters(node) {
-            // Nested repetitions of nothing would be unrolled without end.
-            return Ok(ends);
-        }
-        for _ in 0..min {
-            let next = self.add(node)?;
-            ends = self.concatenate(ends, next);
-        }
-        for _ in min..max.unwrap_or(min) {
-            let mut next = self.add(node)?;
-            next.empty = true;
-            ends = self.concatenate(ends, next);
-        }
-        if max.is_none() {
-            let mut starred = self.add(node)?;
-            self.link(&starred.last, &starred.first);
-            starred.empty = true;
-            ends = self.concatenate(ends, starred);
-        }
-        Ok(ends)
-    }
-
-    fn concatenate(&mut self, mut a: Ends, b: Ends) -> Ends {
-        self.link(&a.last, &b.first);
-        if a.empty {
-            a.first.extend(&b.first);
-        }
-        let mut last = b.last;
-        if b.empty {
-            last.extend(a.last);
-        }
-        Ends { empty: a.empty && b.empty, first: a.first, last }
-    }
-
-    fn link(&mut self, from: &[usize], to: &[usize]) {
-        for &p in from {
-            self.follow[p].extend(to);
-            self.follow[p].sort_unstable();
-            self.follow[p].dedup();
-        }
-    }
-}
-
-fn has_letters(node: &Node) -> bool {
-    match node {
-        Node::Empty => false,
-        Node::Letters(_) => true,
-        Node::Sequence(nodes) | Node::Union(nodes) => nodes.iter().any(has_letters),
-        Node::Repeat { node, .. } => has_letters(node),
-    }
-}
-
-impl Automaton {
-    /// The minimal automaton of `nodes`.
-    pub fn new(nodes: &[&Node]) -> Result<Self, TooLarge> {
-        let mut positions = Positions::default();
-        let mut start = Vec::new();
-        let mut start_mask = 0u32;
-        let mut final_mask: HashMap<usize, u32> = HashMap::new();
-        for (layer, node) in nodes.iter().enumerate() {
-            let ends = positions.add(node)?;
-            start.extend(&ends.first);
-            start_mask |= u32::from(ends.empty) << layer;
-            for p in ends.last {
-                *final_mask.entry(p).or_default() |= 1 << layer;
-            }
-        }
-        let automaton = subsets(&positions, start, start_mask, &final_mask)?;
-        Ok(automaton.minimised())
-    }
-
-    /// Moore's partition refinement.
-    fn minimised(&self) -> Self {
-        let mut block = number(self.accepts.iter());
-        loop {
-            let signatures: Vec<_> = (0..self.next.len())
-                .map(|s| (block[s], self.next[s].map(|n| block[usize::from(n)])))
-                .collect();
-            let refined = number(signatures.iter());
-            if refined.iter().max() == block.iter().max() {
-                break;
-            }
-            block = refined;
-        }
-        // Blocks are numbered in the order they appear, so the start stays 0.
-        let count = block.iter().max().map_or(0, |m| usize::from(*m) + 1);
-        let mut minimal = Self { next: vec![[0; LETTERS]; count], accepts: vec![0; count] };
-        for (s, b) in block.iter().enumerate() {
-            minimal.next[usize::from(*b)] = self.next[s].map(|n| block[usize::from(n)]);
-            minimal.accepts[usize::from(*b)] = self.accepts[s];
-        }
-        minimal
-    }
-}
-
-/// Numbers equal items alike, in the order they appear.
-fn number<T: std::hash::Hash + Eq>(items: impl Iterator<Item = T>) -> Vec<u16> {
-    let mut seen = HashMap::new();
-    items
-        .map(|item| {
-            let new = seen.len() as u16;
-            *seen.entry(item).or_insert(new)
-        })
-        .collect()
-}
-
-/// Subset construction. A state is the set of positions that may be read next, and which
-/// expressions the word read so far belongs to.
-fn subsets(
-    positions: &Positions,
-    mut start: Vec<usize>,
-    start_mask: u32,
-    final_mask: &HashMap<usize, u32>,
-) -> Result<Automaton, TooLarge> {
-    start.sort_unstable();
-    start.dedup();
-    let mut index = HashMap::from([((start.clone(), start_mask), 0u16)]);
-    let mut states = vec![(start, start_mask)];
-    let mut automaton = Automaton { next: Vec::new(), accepts: Vec::new() };
-    let mut done = 0;
-    while done < states.len() {
-        let (candidates, mask) = states[done].clone();
-        automaton.accepts.push(mask);
-        let mut successors = [0; LETTERS];
-        for (letter, successor) in successors.iter_mut().enumerate() {
-            let (mut next, mut accepted) = (Vec::new(), 0);
-            for &p in candidates.iter().filter(|p| positions.letters[**p] & (1 << letter) != 0) {
-                next.extend(&positions.follow[p]);
-                accepted |= final_mask.get(&p).copied().unwrap_or(0);
-            }
-            next.sort_unstable();
-            next.dedup();
-            let key = (next, accepted);
-            *successor = match index.get(&key) {
-                Some(&known) => known,
-                None => {
-                    if states.len() >= MAX_STATES {
-                        return Err(TooLarge);
+            Node::Empty => empty,
+            Node::Letters(mask) => self.position(*mask),
+            Node::Sequence(nodes) => nodes.iter().fold(empty, |before, node| {
+                let after = self.add(node);
+                self.chain(&before, &after)
+            }),
+            Node::Union(nodes) => nodes.iter().fold(Fragment::default(), |mut union, node| {
+                let part = self.add(node);
+                union.nullable |= part.nullable;
+                union.first.unite(&part.first);
+                union.last.unite(&part.last);
+                union
+            }),
+            Node::Repeat { node, min, max } => {
+                // `a{2,}` is `a a+`, `a*` is `(a+)?`, `a{2,4}` is `a a a? a?`.
+                let copies = max.unwrap_or((*min).max(1));
+                (0..copies).fold(empty, |before, copy| {
+                    let mut part = self.add(node);
+                    part.nullable |= copy >= *min;
+                    if max.is_none() && copy + 1 == copies {
+                        self.link(&part.last, &part.first);
                     }
-                    let new = states.len() as u16;
-                    index.insert(key.clone(), new);
-                    states.push(key);
-                    new
-                }
-            };
+                    self.chain(&before, &part)
+                })
+            }
         }
-        automaton.next.push(successors);
-        done += 1;
     }
-    Ok(automaton)
+
+    fn position(&mut self, letters: u8) -> Fragment {
+        let mut place = Set::default();
+        // The parser lets no expression through that names more than MAX_EVENTS events.
+        place.insert(self.follow.len());
+        self.follow.push(Set::default());
+        for (letter, positions) in self.of_letter.iter_mut().enumerate() {
+            if letters & (1 << letter) != 0 {
+                positions.unite(&place);
+            }
+        }
+        Fragment {
+            nullable: false,
+            first: place,
+            last: place,
+        }
+    }
+
+    fn link(&mut self, from: &Set, to: &Set) {
+        for position in from.iter() {
+            self.follow[position].unite(to);
+        }
+    }
+
+    fn chain(&mut self, before: &Fragment, after: &Fragment) -> Fragment {
+        self.link(&before.last, &after.first);
+        let mut chain = Fragment {
+            nullable: before.nullable && after.nullable,
+            first: before.first,
+            last: after.last,
+        };
+        if before.nullable {
+            chain.first.unite(&after.first);
+        }
+        if after.nullable {
+            chain.last.unite(&before.last);
+        }
+        chain
+    }
+
+    /// The subset construction. A state is the set of positions that may come next, and whether
+    /// the word so far matches.
+    fn determinise(&self) -> Result<(Vec<Row<usize>>, Vec<bool>), TooManyStates> {
+        let start = (self.root.first, self.root.nullable);
+        let mut ids = HashMap::from([(start, 0)]);
+        let mut states = vec![start];
+        let mut next = Vec::new();
+        while let Some(&(expected, _)) = states.get(next.len()) {
+            let mut row = [0; LETTERS];
+            for (target, of_letter) in row.iter_mut().zip(&self.of_letter) {
+                let read = expected.meet(of_letter);
+                let mut after = Set::default();
+                read.iter()
+                    .for_each(|position| after.unite(&self.follow[position]));
+                let state = (after, !read.meet(&self.root.last).is_empty());
+                *target = *ids.entry(state).or_insert(states.len());
+                if *target == states.len() {
+                    states.push(state);
+                }
+            }
+            if states.len() > MAX_SUBSETS {
+                return Err(TooManyStates);
+            }
+            next.push(row);
+        }
+        Ok((
+            next,
+            states.iter().map(|&(_, accepting)| accepting).collect(),
+        ))
+    }
+}
+
+/// Moore's algorithm: split the states by what they accept now, after one letter, after two, …
+fn minimise(next: &[Row<usize>], accepting: &[bool]) -> Result<Automaton, TooManyStates> {
+    let mut block: Vec<usize> = accepting
+        .iter()
+        .map(|&accepts| usize::from(accepts))
+        .collect();
+    let mut count = 0;
+    loop {
+        let mut ids = HashMap::new();
+        let refined: Vec<usize> = (0..next.len())
+            .map(|state| {
+                let fresh = ids.len();
+                *ids.entry((block[state], next[state].map(|to| block[to])))
+                    .or_insert(fresh)
+            })
+            .collect();
+        // State 0 is seen first, so its block is block 0: the start stays at 0.
+        block = refined;
+        if ids.len() > MAX_CLASSES {
+            return Err(TooManyStates);
+        }
+        if ids.len() == count {
+            break;
+        }
+        count = ids.len();
+    }
+    let mut minimal = Automaton {
+        next: vec![[0; LETTERS]; count],
+        accepting: vec![false; count],
+    };
+    for (state, &id) in block.iter().enumerate() {
+        // At most MAX_CLASSES = 255 blocks.
+        minimal.next[id] = next[state].map(|to| block[to] as u8);
+        minimal.accepting[id] = accepting[state];
+    }
+    Ok(minimal)
 }

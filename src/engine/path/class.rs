@@ -1,9 +1,8 @@
-//! The transition monoid of a set of layers: what one byte must remember of a path segment.
-
-use std::collections::HashMap;
+//! Path classes: the one byte that a path segment carries instead of its word.
 
 use super::automaton::{Automaton, LETTERS};
 use super::expression::{Expression, ExpressionError};
+use super::monoid::Monoid;
 use crate::engine::event::Letter;
 
 /// The four components: label and expression. Microfacet lobes count as specular, volumes as
@@ -29,21 +28,35 @@ impl ClassId {
     }
 }
 
-/// Most elements: a class is one byte.
-const MAX_ELEMENTS: usize = 255;
+/// Most classes of one set of layers: an id is one byte.
+pub(super) const MAX_CLASSES: usize = 255;
 /// Most layers: a set of them is a `u32`.
 const MAX_LAYERS: usize = 32;
-/// Row length of the join table, so that two bytes are an index that needs no check.
+/// Length of the tables, so that no byte is out of bounds.
 const ROW: usize = 256;
 
-/// The classes of paths for a set of layers.
+/// The classes of paths for a set of layers: a finite monoid as tables.
+///
+/// Words other than the empty one may share [`ClassId::EMPTY`] where the layers cannot tell them
+/// from it, as in `L.*E` alone; beside the components none does.
+///
+/// The components need 6 classes. With one expression beside them, over all four letters and, for
+/// comparison, over words of D and S only:
+///
+/// | expression | D G S V | D S |
+/// |---|---|---|
+/// | `LDS*E\|LS*E` | 9 | 7 |
+/// | `LS+DE` | 9 | 6 |
+/// | `L(S\|D)*E` | 11 | 6 |
+/// | `LDDDE\|LSDSDE` | 14 | 13 |
+/// | `L.*D.{3}E` | 55 | 33 |
 #[derive(Clone, Debug)]
 pub struct PathClasses {
     labels: Vec<String>,
     expressions: Vec<Expression>,
     len: usize,
     letters: [ClassId; LETTERS],
-    join: Box<[u8]>,
+    join: Box<[[ClassId; ROW]; ROW]>,
     layers: [u32; ROW],
     from_eye: [u32; ROW],
     from_light: [u32; ROW],
@@ -75,25 +88,71 @@ impl PathClasses {
     /// # Errors
     /// As [`Self::with_components`].
     pub fn new(labels: Vec<String>, expressions: Vec<Expression>) -> Result<Self, ExpressionError> {
-        let refuse = |message: String| ExpressionError {
-            text: expressions.last().map_or_else(String::new, |e| e.text().to_owned()),
+        let refuse = |layer: usize, message: String| ExpressionError {
+            text: expressions
+                .get(layer)
+                .map_or_else(String::new, |e| e.text().to_owned()),
             position: None,
             message,
         };
         if expressions.len() > MAX_LAYERS {
             let given = expressions.len();
-            return Err(refuse(format!("there can be at most {MAX_LAYERS} layers, not {given}")));
+            let message = format!("there can be at most {MAX_LAYERS} layers, not {given}");
+            return Err(refuse(MAX_LAYERS, message));
         }
-        let nodes: Vec<_> = expressions.iter().map(|e| &e.node).collect();
-        let too_large = || {
-            refuse(format!(
-                "together with the other layers it needs more than {MAX_ELEMENTS} path classes; \
-                 use a shorter expression, or fewer"
-            ))
+        let mut automata = Vec::with_capacity(expressions.len());
+        for (layer, expression) in expressions.iter().enumerate() {
+            let automaton = Automaton::new(&expression.node).map_err(|_| {
+                refuse(
+                    layer,
+                    format!("it needs more than {MAX_CLASSES} path classes; {SHORTEN}"),
+                )
+            })?;
+            automata.push(automaton);
+        }
+        match Monoid::new(&automata, &Letter::ALL) {
+            Ok(monoid) => Ok(Self::tabulate(&monoid, labels, expressions)),
+            Err(_) => {
+                let message = format!(
+                    "together with the layers before it, it needs more than {MAX_CLASSES} path \
+                     classes; {SHORTEN}"
+                );
+                Err(refuse(first_too_many(&automata), message))
+            }
+        }
+    }
+
+    fn tabulate(monoid: &Monoid, labels: Vec<String>, expressions: Vec<Expression>) -> Self {
+        let len = monoid.then.len();
+        let mut classes = Self {
+            labels,
+            expressions,
+            len,
+            letters: monoid.then[0].map(ClassId),
+            join: Box::new([[ClassId::EMPTY; ROW]; ROW]),
+            layers: [0; ROW],
+            from_eye: [0; ROW],
+            from_light: [0; ROW],
         };
-        let automaton = Automaton::new(&nodes).map_err(|_| too_large())?;
-        let monoid = Monoid::new(&automaton).ok_or_else(too_large)?;
-        Ok(monoid.tabulate(&automaton, labels, expressions))
+        classes.layers[..len].copy_from_slice(&monoid.layers);
+        for light in 0..len {
+            let row = &mut classes.join[light];
+            row[0] = ClassId(light as u8);
+            // Elements are numbered by the length of their shortest words: what an entry is made
+            // from stands before it.
+            for (eye, found) in monoid.shortest.iter().enumerate() {
+                if let Some((shorter, letter)) = *found {
+                    let before = usize::from(row[usize::from(shorter)].0);
+                    row[eye] = ClassId(monoid.then[before][letter as usize]);
+                }
+            }
+            for (eye, joined) in row[..len].iter().enumerate() {
+                let word = classes.layers[usize::from(joined.0)];
+                classes.from_eye[eye] |= word;
+                classes.from_light[light] |= word;
+            }
+        }
+        classes
     }
 
     /// Number of classes.
@@ -125,7 +184,7 @@ impl PathClasses {
     /// Class of a word whose part toward the light is `light_side`, the rest `eye_side`.
     #[inline]
     pub fn join(&self, light_side: ClassId, eye_side: ClassId) -> ClassId {
-        ClassId(self.join[usize::from(light_side.0) * ROW + usize::from(eye_side.0)])
+        self.join[usize::from(light_side.0)][usize::from(eye_side.0)]
     }
 
     /// Class of `suffix` after one more event on the light side: a step of a camera walk.
@@ -168,7 +227,10 @@ impl PathClasses {
         let rounds = max_events.map_or(self.len, |m| self.len.min(m as usize));
         for _ in 0..rounds {
             let mut next = Vec::new();
-            for (&class, &letter) in frontier.iter().flat_map(|c| letters.iter().map(move |l| (c, l))) {
+            for (&class, &letter) in frontier
+                .iter()
+                .flat_map(|c| letters.iter().map(move |l| (c, l)))
+            {
                 let longer = self.append(class, letter);
                 if !std::mem::replace(&mut known[usize::from(longer.0)], true) {
                     mask |= self.layers(longer);
@@ -181,73 +243,13 @@ impl PathClasses {
     }
 }
 
-/// The functions from states to states that words of events induce.
-struct Monoid {
-    elements: Vec<Vec<u16>>,
-    index: HashMap<Vec<u16>, u8>,
-}
+/// What helps against too many classes.
+const SHORTEN: &str = "use smaller counts, or fewer expressions";
 
-impl Monoid {
-    /// Enumerates breadth first; `None` if there are too many.
-    fn new(automaton: &Automaton) -> Option<Self> {
-        let identity: Vec<u16> = (0..automaton.next.len() as u16).collect();
-        let mut monoid =
-            Self { index: HashMap::from([(identity.clone(), 0)]), elements: vec![identity] };
-        let mut done = 0;
-        while done < monoid.elements.len() {
-            for letter in 0..LETTERS {
-                let step = |s: &u16| automaton.next[usize::from(*s)][letter];
-                let longer: Vec<u16> = monoid.elements[done].iter().map(step).collect();
-                if !monoid.index.contains_key(&longer) {
-                    if monoid.elements.len() >= MAX_ELEMENTS {
-                        return None;
-                    }
-                    monoid.index.insert(longer.clone(), monoid.elements.len() as u8);
-                    monoid.elements.push(longer);
-                }
-            }
-            done += 1;
-        }
-        Some(monoid)
-    }
-
-    /// The element that reads a word of `first`, then one of `second`.
-    fn compose(&self, first: usize, second: usize) -> u8 {
-        let second = &self.elements[second];
-        let both: Vec<u16> =
-            self.elements[first].iter().map(|s| second[usize::from(*s)]).collect();
-        self.index[&both]
-    }
-
-    fn tabulate(
-        &self,
-        automaton: &Automaton,
-        labels: Vec<String>,
-        expressions: Vec<Expression>,
-    ) -> PathClasses {
-        let len = self.elements.len();
-        let mut join = vec![0; ROW * ROW].into_boxed_slice();
-        let mut layers = [0; ROW];
-        for a in 0..len {
-            layers[a] = automaton.accepts[usize::from(self.elements[a][0])];
-            for b in 0..len {
-                join[a * ROW + b] = self.compose(a, b);
-            }
-        }
-        let (mut from_eye, mut from_light) = ([0; ROW], [0; ROW]);
-        for a in 0..len {
-            for b in 0..len {
-                let word = layers[usize::from(join[a * ROW + b])];
-                from_eye[b] |= word;
-                from_light[a] |= word;
-            }
-        }
-        let identity = &self.elements[0];
-        let letters = std::array::from_fn(|letter| {
-            let step = |s: &u16| automaton.next[usize::from(*s)][letter];
-            let function: Vec<u16> = identity.iter().map(step).collect();
-            ClassId(self.index[&function])
-        });
-        PathClasses { labels, expressions, len, letters, join, layers, from_eye, from_light }
-    }
+/// The first layer with which the classes become too many. More layers never have fewer classes, so
+/// it is the last one if none before it is.
+fn first_too_many(automata: &[Automaton]) -> usize {
+    let too_many = |layer: &usize| Monoid::new(&automata[..=*layer], &Letter::ALL).is_err();
+    let last = automata.len().saturating_sub(1);
+    (0..last).find(too_many).unwrap_or(last)
 }

@@ -9,6 +9,7 @@
 mod automaton;
 mod class;
 mod expression;
+mod monoid;
 mod parser;
 
 pub use class::{COMPONENTS, ClassId, PathClasses};

@@ -9,7 +9,7 @@
 //!
 //! A `|` outside brackets parts whole paths if an `L` follows it, events otherwise.
 
-use super::expression::{ExpressionError, Node};
+use super::expression::{ExpressionError, MAX_EVENTS, Node};
 
 /// Longest text that is read.
 const MAX_CHARACTERS: usize = 4096;
@@ -23,10 +23,18 @@ const ANY: u8 = 0b1111;
 /// Reads an expression.
 pub(super) fn parse(text: &str) -> Result<Node, ExpressionError> {
     let characters = text.char_indices().enumerate();
-    let symbols: Vec<(usize, char)> =
-        characters.map(|(i, (_, c))| (i, c)).filter(|(_, c)| !c.is_whitespace()).collect();
+    let symbols: Vec<(usize, char)> = characters
+        .map(|(i, (_, c))| (i, c))
+        .filter(|(_, c)| !c.is_whitespace())
+        .collect();
     let length = text.chars().count();
-    let mut parser = Parser { text, symbols, length, at: 0, depth: 0 };
+    let mut parser = Parser {
+        text,
+        symbols,
+        length,
+        at: 0,
+        depth: 0,
+    };
     if length > MAX_CHARACTERS {
         return Err(parser.error(
             MAX_CHARACTERS,
@@ -62,7 +70,11 @@ impl Parser<'_> {
 
     fn error(&self, position: usize, message: &str) -> ExpressionError {
         let message = message.to_owned();
-        ExpressionError { text: self.text.to_owned(), position: Some(position), message }
+        ExpressionError {
+            text: self.text.to_owned(),
+            position: Some(position),
+            message,
+        }
     }
 
     fn error_here(&self, message: &str) -> ExpressionError {
@@ -87,7 +99,10 @@ impl Parser<'_> {
             }
             self.at += 1;
             match self.peek() {
-                None => return Ok(one_or(paths, Node::Union)),
+                None => {
+                    let end = self.symbols.last().map_or(0, |symbol| symbol.0);
+                    return self.bounded(one_or(paths, Node::Union), end);
+                }
                 Some('|') => self.at += 1,
                 Some(_) => {
                     let message = "after the eye `E` comes nothing, or `|` and another path";
@@ -111,7 +126,11 @@ impl Parser<'_> {
         while let Some(atom) = self.atom()? {
             parts.push(self.repeats(atom)?);
         }
-        Ok(if parts.is_empty() { Node::Empty } else { one_or(parts, Node::Sequence) })
+        Ok(if parts.is_empty() {
+            Node::Empty
+        } else {
+            one_or(parts, Node::Sequence)
+        })
     }
 
     fn atom(&mut self) -> Result<Option<Node>, ExpressionError> {
@@ -161,13 +180,30 @@ impl Parser<'_> {
                 Some('{') => self.braces()?,
                 _ => return Ok(node),
             };
+            let position = self.position();
             stacked += 1;
             if stacked > MAX_DEPTH {
                 return Err(self.error_here(&format!("at most {MAX_DEPTH} repetitions in a row")));
             }
             self.at += 1;
-            node = Node::Repeat { node: Box::new(node), min, max };
+            node = self.bounded(
+                Node::Repeat {
+                    node: Box::new(node),
+                    min,
+                    max,
+                },
+                position,
+            )?;
         }
+    }
+
+    /// The node, which ends at `position`, if it is not too large.
+    fn bounded(&self, node: Node, position: usize) -> Parsed {
+        if node.written_out() <= MAX_EVENTS {
+            return Ok(node);
+        }
+        let message = format!("with its counts written out it names more than {MAX_EVENTS} events");
+        Err(self.error(position, &message))
     }
 
     /// `{m}`, `{m,}` or `{m,n}`; stops at the closing brace.
@@ -177,7 +213,11 @@ impl Parser<'_> {
         let min = self.count()?;
         let max = if self.peek() == Some(',') {
             self.at += 1;
-            if self.peek() == Some('}') { None } else { Some(self.count()?) }
+            if self.peek() == Some('}') {
+                None
+            } else {
+                Some(self.count()?)
+            }
         } else {
             Some(min)
         };
@@ -206,7 +246,11 @@ impl Parser<'_> {
 }
 
 fn one_or(mut nodes: Vec<Node>, many: fn(Vec<Node>) -> Node) -> Node {
-    if nodes.len() == 1 { nodes.remove(0) } else { many(nodes) }
+    if nodes.len() == 1 {
+        nodes.remove(0)
+    } else {
+        many(nodes)
+    }
 }
 
 #[cfg(test)]
@@ -220,7 +264,7 @@ mod tests {
 
     #[test]
     fn errors_point_at_the_character() {
-        let cases: [(&str, usize, &str); 19] = [
+        let cases: [(&str, usize, &str); 22] = [
             ("", 0, "begins with the light"),
             ("D*E", 0, "begins with the light"),
             ("  DE", 2, "begins with the light"),
@@ -240,6 +284,13 @@ mod tests {
             ("LD{3,1}E", 2, "m is at most n"),
             ("LD{999999999999}E", 3, "at most 255"),
             ("LD{1,2E", 6, "braces hold"),
+            ("L(.{255}){255}E", 13, "more than 512 events"),
+            (
+                "L((((D{0}){255}){255}){255}){255}E",
+                20,
+                "more than 512 events",
+            ),
+            ("LD{255}S{255}G{3}E", 17, "more than 512 events"),
         ];
         for (text, position, part) in cases {
             let (at, message) = error(text);

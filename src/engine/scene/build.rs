@@ -2,11 +2,10 @@
 
 use glam::{Affine3A, Vec3, Vec3A};
 
-use super::desc::{MeshDesc, SceneDesc};
+use super::desc::{ColorDesc, MeshDesc, SceneDesc, SphereDesc};
 use super::features::SceneFeatures;
 use super::material::{Features, Material};
 use super::prepared::Scene;
-use super::texture::Texture;
 use crate::engine::geometry::{DropReport, Geometry, MeshInput, SphereInput};
 use crate::engine::light::{Emitter, Lights};
 
@@ -95,7 +94,7 @@ fn transform_normal(transform: &Affine3A, n: Vec3) -> Vec3 {
     Vec3::from(cofactor * m.determinant().signum())
 }
 
-fn sphere_input(desc: &super::desc::SphereDesc) -> SphereInput {
+fn sphere_input(desc: &SphereDesc) -> SphereInput {
     SphereInput {
         center: desc.center,
         radius: desc.radius,
@@ -109,16 +108,17 @@ fn emitters(desc: &SceneDesc, geometry: &Geometry) -> Result<Vec<Emitter>, Strin
     let mut emitters = Vec::new();
     for (index, mesh) in desc.meshes.iter().enumerate() {
         let Some(emission) = &mesh.emission else { continue };
-        let radiance =
-            Texture::build(emission).map_err(|e| format!("mesh \"{}\": {e}", mesh.name))?;
+        let ColorDesc::Constant(radiance) = *emission else {
+            return Err(format!("mesh \"{}\": emission is one colour, not a texture", mesh.name));
+        };
         let prims = geometry.mesh_triangles(index);
-        emitters.extend(prims.map(|prim| Emitter { prim, radiance: radiance.clone() }));
+        emitters.extend(prims.map(|prim| Emitter { prim, radiance }));
     }
     for (index, sphere) in desc.spheres.iter().enumerate() {
         let (Some(radiance), Some(prim)) = (sphere.emission, geometry.sphere_prim(index)) else {
             continue;
         };
-        emitters.push(Emitter { prim, radiance: Texture::Constant(radiance) });
+        emitters.push(Emitter { prim, radiance });
     }
     Ok(emitters)
 }
@@ -147,8 +147,8 @@ fn features(desc: &SceneDesc, materials: &[Material], lights: &Lights) -> SceneF
         specular: all.contains(Features::SPECULAR),
         opacity: all.contains(Features::TRANSPARENT),
         textures: all.contains(Features::TEXTURED),
-        hittable_lights: lights.iter().any(|l| !l.is_delta()),
-        zero_size_lights: lights.iter().any(|l| l.is_delta()),
+        hittable_lights: lights.as_slice().iter().any(|l| !l.is_delta()),
+        zero_size_lights: lights.as_slice().iter().any(|l| l.is_delta()),
         environment: !lights.environments().is_empty(),
     }
 }

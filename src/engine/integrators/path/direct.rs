@@ -26,14 +26,14 @@ impl PathTracer {
         let lights = &cx.scene.lights;
         let u = sampler.next_2d();
         if self.mode == Mode::Mis {
-            let (id, pmf) = lights.sample(sampler.next_1d());
+            let Some((id, pmf)) = lights.sample(sampler.next_1d()) else { return };
             if let Some(sample) = lights.get(id).sample_li(si.p, u) {
                 self.add_light_sample(cx, walk, si, bsdf, &sample, pmf, out, stats);
             }
             return;
         }
         // One point of the square serves all lights, turned by a number of each light's own.
-        for (i, light) in lights.iter().enumerate() {
+        for (i, light) in lights.as_slice().iter().enumerate() {
             let shift = glam::Vec2::new(i as f32 * 0.754_877_7, i as f32 * 0.569_840_3);
             if let Some(sample) = light.sample_li(si.p, (u + shift).fract()) {
                 self.add_light_sample(cx, walk, si, bsdf, &sample, 1.0, out, stats);

@@ -151,7 +151,7 @@ impl PathTracer {
         let Some(id) = si.light else { return };
         let lights = &cx.scene.lights;
         let light = lights.get(id);
-        let emitted = light.emitted(si);
+        let emitted = light.emitted(si, si.wo);
         if emitted.is_black() {
             return;
         }
