@@ -151,7 +151,10 @@ mod tests {
     fn middle_grey_is_where_the_sources_put_it() {
         let near = |map, expected: f32| {
             let shown = grey(map, 0.18);
-            assert!((shown - expected).abs() < 2e-3, "{map:?}: {shown}, not {expected}");
+            assert!(
+                (shown - expected).abs() < 2e-3,
+                "{map:?}: {shown}, not {expected}"
+            );
         };
         near(ToneMap::Linear, 0.18);
         near(ToneMap::Reinhard, 0.18 / 1.18);
@@ -164,8 +167,14 @@ mod tests {
     #[test]
     fn srgb_is_applied_once() {
         // Published code values: linear 0.5 is 188, 0.18 is 118, 0.0031308 · 12.92 is 10.
-        assert_eq!(tonemap(ToneMap::Linear, 0.0, [0.5, 0.18, 0.003_130_8]), [188, 118, 10]);
-        assert_eq!(tonemap(ToneMap::Linear, -1.0, [1.0, 2.0, 4.0]), [188, 255, 255]);
+        assert_eq!(
+            tonemap(ToneMap::Linear, 0.0, [0.5, 0.18, 0.003_130_8]),
+            [188, 118, 10]
+        );
+        assert_eq!(
+            tonemap(ToneMap::Linear, -1.0, [1.0, 2.0, 4.0]),
+            [188, 255, 255]
+        );
     }
 
     #[test]
