@@ -50,11 +50,9 @@ impl Rays {
 
 /// Runs the command.
 pub fn run(args: &BenchRaysArgs) -> Result<(), CliError> {
+    let given = args.rays.as_deref().map(read_rays).transpose()?;
     let desc = scene::read_file(&args.mesh)?;
-    let rays = match &args.rays {
-        Some(path) => read_rays(path)?,
-        None => own_rays(&desc)?,
-    };
+    let rays = given.map_or_else(|| own_rays(&desc), Ok)?;
     let (positions, triangles) = joined(&desc);
     let report = bench_rays(&positions, &triangles, &rays, args.repeats as usize);
     let figures = Figures {

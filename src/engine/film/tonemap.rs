@@ -66,7 +66,8 @@ pub fn tonemap(map: ToneMap, exposure_ev: f32, rgb: [f32; 3]) -> [u8; 3] {
 
 /// Linear display values in [0, 1] of exposed radiance.
 pub fn curve(map: ToneMap, rgb: [f32; 3]) -> [f32; 3] {
-    let rgb = rgb.map(|x| x.max(0.0).min(BRIGHTEST));
+    // A comparison with NaN fails.
+    let rgb = rgb.map(|x| if x > 0.0 { x.min(BRIGHTEST) } else { 0.0 });
     let shown = match map {
         ToneMap::Linear => rgb,
         ToneMap::Reinhard => rgb.map(|x| x / (1.0 + x)),
@@ -93,7 +94,7 @@ fn narkowicz(x: f32) -> f32 {
 const AGX_INSET: [[f32; 3]; 3] = [
     [0.842_479_05, 0.078_433_6, 0.079_223_745],
     [0.042_328_242, 0.878_468_64, 0.079_166_13],
-    [0.042_375_654, 0.078_433_6, 0.879_142_97],
+    [0.042_375_654, 0.078_433_6, 0.879_143],
 ];
 /// Undoes [`AGX_INSET`] after the curve.
 const AGX_OUTSET: [[f32; 3]; 3] = [
