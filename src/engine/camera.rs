@@ -9,7 +9,7 @@
 
 use std::f32::consts::PI;
 
-use glam::{Vec2, Vec3A};
+use glam::{UVec2, Vec2, Vec3A};
 
 use super::geometry::Ray;
 use super::sampling::warp::sample_unit_disk;
@@ -102,16 +102,18 @@ impl Camera {
         })
     }
 
-    /// The same view, vertical opening included, with another number of pixels.
-    ///
-    /// # Errors
-    /// A sentence, if the picture has no pixels.
-    pub fn with_size(&self, width: u32, height: u32) -> Result<Self, String> {
-        Self::new(&CameraDesc {
-            width,
-            height,
-            ..self.desc
-        })
+    /// The same view, vertical opening included, with another number of pixels (at least one
+    /// each way: an empty picture has no rays, but still a view).
+    #[must_use]
+    pub fn with_size(&self, size: UVec2) -> Self {
+        let size = size.max(UVec2::ONE);
+        let aspect = f64::from(size.x) / f64::from(size.y);
+        Self {
+            desc: CameraDesc { width: size.x, height: size.y, ..self.desc },
+            half: Vec2::new((f64::from(self.half.y) * aspect) as f32, self.half.y),
+            size: size.as_vec2(),
+            ..self.clone()
+        }
     }
 
     /// What it was made from.
@@ -120,8 +122,8 @@ impl Camera {
     }
 
     /// Width and height in pixels.
-    pub fn size(&self) -> (u32, u32) {
-        (self.desc.width, self.desc.height)
+    pub fn size(&self) -> UVec2 {
+        UVec2::new(self.desc.width, self.desc.height)
     }
 
     /// Unit view direction, the normal of the lens.
@@ -129,9 +131,9 @@ impl Camera {
         self.forward
     }
 
-    /// Whether all rays pass one point.
-    pub fn is_pinhole(&self) -> bool {
-        self.lens_radius == 0.0
+    /// Whether rays start on a lens and not in one point.
+    pub fn has_lens(&self) -> bool {
+        self.lens_radius > 0.0
     }
 
     /// The ray that the film position `film` sees through the point `u_lens` of the lens; its
@@ -150,7 +152,7 @@ impl Camera {
 
     #[inline]
     fn lens_point(&self, u: Vec2) -> Vec2 {
-        if self.is_pinhole() {
+        if !self.has_lens() {
             Vec2::ZERO
         } else {
             sample_unit_disk(u) * self.lens_radius
@@ -171,7 +173,7 @@ impl Camera {
     /// Area of the lens; 1 for a pinhole, which counts as a delta.
     #[inline]
     fn lens_area(&self) -> f32 {
-        if self.is_pinhole() {
+        if !self.has_lens() {
             1.0
         } else {
             PI * self.lens_radius * self.lens_radius
@@ -203,7 +205,7 @@ impl Camera {
     /// Position on the lens of a point near it.
     #[inline]
     fn lens_from_world(&self, p: Vec3A) -> Vec2 {
-        if self.is_pinhole() {
+        if !self.has_lens() {
             return Vec2::ZERO;
         }
         let from = p - self.position;

@@ -135,9 +135,12 @@ impl Lights {
     }
 
     /// The light of this index.
+    ///
+    /// # Panics
+    /// Beyond the last: ids come from [`Lights::sample`], surfaces and [`Lights::environments`].
     #[inline]
-    pub fn get(&self, id: u32) -> Option<&Light> {
-        self.lights.get(id as usize)
+    pub fn get(&self, id: u32) -> &Light {
+        &self.lights[id as usize]
     }
 
     /// All lights, by index.
@@ -158,7 +161,7 @@ impl Lights {
 
     /// What a ray in the direction `d` sees when it leaves the scene: all environments together.
     pub fn escaped(&self, d: Vec3A) -> Rgb {
-        let environments = self.environments.iter().filter_map(|&id| self.get(id));
+        let environments = self.environments.iter().map(|&id| self.get(id));
         environments.map(|light| light.escaped(d)).sum()
     }
 
