@@ -37,8 +37,10 @@ pub enum Command {
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
-#[command(after_help = "Without --spp, --seconds and --error it computes 64 samples per pixel; \
-                        with several of them it stops at the first one reached.")]
+#[command(
+    after_help = "Without --spp, --seconds and --error it computes 64 samples per pixel; \
+                        with several of them it stops at the first one reached."
+)]
 pub struct RenderArgs {
     /// Scene: an id of `lightscope list scenes`, or a file (`./NAME` is always a file).
     pub scene: String,
@@ -61,7 +63,7 @@ pub struct RenderArgs {
     #[arg(long)]
     pub no_whole: bool,
     /// Stop after this many samples per pixel.
-    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    #[arg(long, value_name = "N", value_parser = at_least_one, allow_negative_numbers = true)]
     pub spp: Option<u64>,
     /// Stop after this many seconds.
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
@@ -73,19 +75,21 @@ pub struct RenderArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<UVec2>,
     /// Threads; 0 is one a core.
-    #[arg(long, value_name = "N", default_value = "0", value_parser = threads)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,
     /// Seed of all random numbers.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Most scattering events of a path; 0 shows emitters only [default: unlimited].
-    #[arg(long, value_name = "N")]
-    pub max_depth: Option<u32>,
-    /// Exposure of a PNG in stops.
     #[arg(
-        long, value_name = "EV", default_value_t = 0.0, value_parser = exposure,
+        long,
+        value_name = "N",
+        default_value_t = 0,
         allow_negative_numbers = true
     )]
+    pub seed: u64,
+    /// Most scattering events of a path; 0 shows emitters only [default: unlimited].
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub max_depth: Option<u32>,
+    /// Exposure of a PNG in stops.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = exposure, allow_negative_numbers = true)]
     pub exposure: f32,
     /// Tone map of a PNG: linear, reinhard, filmic or agx.
     #[arg(long, value_name = "ID", default_value = "linear", value_parser = tone_map)]
@@ -120,6 +124,7 @@ pub struct CompareArgs {
 #[derive(Debug, Args)]
 pub struct ListArgs {
     /// What to list.
+    #[arg(value_name = "scenes|integrators")]
     pub what: Listing,
     /// Print JSON.
     #[arg(long)]
@@ -159,6 +164,8 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Time from a change of camera to the first picture.
     FirstFrame(FirstFrameArgs),
+    /// Rays a second on one mesh, single-threaded.
+    Rays(BenchRaysArgs),
     /// Error against time on scenes with references, single-threaded.
     Scenes(BenchScenesArgs),
 }
@@ -173,11 +180,29 @@ pub struct FirstFrameArgs {
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub size: UVec2,
     /// Changes of camera.
-    #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one)]
+    #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one, allow_negative_numbers = true)]
     pub changes: u64,
     /// Threads; 0 is one a core.
-    #[arg(long, value_name = "N", default_value = "0", value_parser = threads)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench rays`.
+#[derive(Debug, Args)]
+pub struct BenchRaysArgs {
+    /// Mesh (.obj).
+    #[arg(value_name = "MESH.obj")]
+    pub mesh: PathBuf,
+    /// Rays: two little-endian u32 counts (primary, bounce), then six f32 a ray (origin, unit
+    /// direction) [default: 512 × 512 rays of the mesh's own view, and a bounce of each].
+    #[arg(long, value_name = "RAYS.bin")]
+    pub rays: Option<PathBuf>,
+    /// Repetitions, of which the best counts.
+    #[arg(long, value_name = "N", default_value = "3", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub repeats: u64,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
@@ -227,7 +252,9 @@ fn positive(text: &str) -> Result<f64, String> {
 fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(n) if n <= MAX_THREADS => Ok(n),
-        _ => Err(format!("it must be a whole number from 0 (one a core) to {MAX_THREADS}")),
+        _ => Err(format!(
+            "it must be a whole number from 0 (one a core) to {MAX_THREADS}"
+        )),
     }
 }
 
@@ -241,7 +268,11 @@ fn exposure(text: &str) -> Result<f32, String> {
 fn tone_map(text: &str) -> Result<ToneMap, String> {
     ToneMap::find(text).ok_or_else(|| {
         let ids = ToneMap::ALL.map(ToneMap::id);
-        format!("it must be one of {}{}", ids.join(", "), did_you_mean(text, ids))
+        format!(
+            "it must be one of {}{}",
+            ids.join(", "),
+            did_you_mean(text, ids)
+        )
     })
 }
 
@@ -275,7 +306,17 @@ mod tests {
     fn sizes_are_read_and_bounded() {
         assert_eq!(size("640x480"), Ok(UVec2::new(640, 480)));
         assert_eq!(size("1X65536"), Ok(UVec2::new(1, 65_536)));
-        for wrong in ["", "640", "x", "640x", "0x480", "640x-1", "65537x1", "65536x65536", "1e3x2"] {
+        for wrong in [
+            "",
+            "640",
+            "x",
+            "640x",
+            "0x480",
+            "640x-1",
+            "65537x1",
+            "65536x65536",
+            "1e3x2",
+        ] {
             assert!(size(wrong).is_err(), "{wrong}");
         }
     }
@@ -284,10 +325,18 @@ mod tests {
     fn numbers_are_bounded() {
         assert_eq!((at_least_one("1"), positive("0.5")), (Ok(1), Ok(0.5)));
         assert!(at_least_one("0").is_err() && at_least_one("-1").is_err());
-        assert!(["0", "-1", "nan", "inf", "x"].iter().all(|t| positive(t).is_err()));
+        assert!(
+            ["0", "-1", "nan", "inf", "x"]
+                .iter()
+                .all(|t| positive(t).is_err())
+        );
         assert!(threads("0").is_ok() && threads("1025").is_err());
         assert!(exposure("-3.5").is_ok() && exposure("NaN").is_err());
         assert!(tone_map("agx").is_ok());
-        assert!(tone_map("filmc").unwrap_err().contains("did you mean \"filmic\"?"));
+        assert!(
+            tone_map("filmc")
+                .unwrap_err()
+                .contains("did you mean \"filmic\"?")
+        );
     }
 }

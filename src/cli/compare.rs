@@ -35,7 +35,11 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
             args.reference.display()
         )));
     }
-    if args.json { print::json(&rows) } else { table(&rows) }
+    if args.json {
+        print::json(&rows)
+    } else {
+        table(&rows)
+    }
 }
 
 #[derive(Serialize)]
@@ -48,7 +52,9 @@ struct Row {
 }
 
 fn row(layer: &Layer, reference: &Layer, standard_errors: &[Layer]) -> Option<Row> {
-    let se = standard_errors.iter().find(|se| se.label == reference.label);
+    let se = standard_errors
+        .iter()
+        .find(|se| se.label == reference.label);
     Some(Row {
         layer: layer.key().to_owned(),
         metrics: Metrics::new(&layer.pixels, &reference.pixels)?,
@@ -57,10 +63,24 @@ fn row(layer: &Layer, reference: &Layer, standard_errors: &[Layer]) -> Option<Ro
 }
 
 fn table(rows: &[Row]) -> Result<(), CliError> {
-    let width = rows.iter().map(|row| row.layer.chars().count()).max().unwrap_or(0).max(8);
+    let width = rows
+        .iter()
+        .map(|row| row.layer.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(8);
     let head = ["rmse", "mae", "bias", "relmse", "nmse", "smape"];
-    print::line(&format!("{:width$} {}", "layer", columns(head.map(str::to_owned))))?;
-    for Row { layer, metrics: m, reference_noise } in rows {
+    print::line(&format!(
+        "{:width$} {}",
+        "layer",
+        columns(head.map(str::to_owned))
+    ))?;
+    for Row {
+        layer,
+        metrics: m,
+        reference_noise,
+    } in rows
+    {
         let nmse = m.nmse.map_or("-".to_owned(), figure);
         let cells = [m.rmse, m.mae, m.bias, m.relmse].map(figure);
         let [rmse, mae, bias, relmse] = cells;
@@ -68,16 +88,33 @@ fn table(rows: &[Row]) -> Result<(), CliError> {
         print::line(&format!("{layer:width$} {cells}"))?;
         if let Some(n) = reference_noise {
             let (none, nmse) = (String::new, n.nmse.map_or("-".to_owned(), figure));
-            let cells = columns([figure(n.rmse), none(), none(), figure(n.relmse), nmse, none()]);
-            print::line(&format!("{:width$} {cells}  from the reference's own noise", ""))?;
+            let cells = columns([
+                figure(n.rmse),
+                none(),
+                none(),
+                figure(n.relmse),
+                nmse,
+                none(),
+            ]);
+            print::line(&format!(
+                "{:width$} {cells}  from the reference's own noise",
+                ""
+            ))?;
         }
         if m.non_finite > 0 {
-            print::line(&format!("{:width$} {} pixels are not finite: left out", "", m.non_finite))?;
+            print::line(&format!(
+                "{:width$} {} pixels are not finite: left out",
+                "", m.non_finite
+            ))?;
         }
     }
     Ok(())
 }
 
 fn columns(cells: [String; 6]) -> String {
-    cells.map(|cell| format!("{cell:>11}")).join(" ").trim_end().to_owned()
+    cells
+        .map(|cell| format!("{cell:>11}"))
+        .join(" ")
+        .trim_end()
+        .to_owned()
 }

@@ -18,10 +18,18 @@ use crate::engine::session::{RenderJob, Renderer, Settings};
 pub fn run(args: &InfoArgs) -> Result<(), CliError> {
     if scene::is_embedded(&args.what) || Format::of(Path::new(&args.what)).is_none() {
         let info = scene_info(&args.what)?;
-        return if args.json { print::json(&info) } else { print_scene(&info) };
+        return if args.json {
+            print::json(&info)
+        } else {
+            print_scene(&info)
+        };
     }
     let info = image_info(Path::new(&args.what))?;
-    if args.json { print::json(&info) } else { print_image(&info) }
+    if args.json {
+        print::json(&info)
+    } else {
+        print_image(&info)
+    }
 }
 
 #[derive(Serialize)]
@@ -67,7 +75,13 @@ fn scene_info(name: &str) -> Result<SceneInfo, CliError> {
     let size = UVec2::new(desc.camera.width, desc.camera.height);
     let (scene, camera) = scene::build(&desc, size)?;
     let settings = Settings::new(&REGISTRY[0]);
-    let job = RenderJob { scene, camera, size, settings, navigating: false };
+    let job = RenderJob {
+        scene,
+        camera,
+        size,
+        settings,
+        navigating: false,
+    };
     let renderer = Renderer::new(&job).map_err(|error| CliError::usage(error.to_string()))?;
     let scene = &job.scene;
     let bounds = scene.geometry.bounds();
@@ -75,7 +89,11 @@ fn scene_info(name: &str) -> Result<SceneInfo, CliError> {
     let missing = REGISTRY.iter().filter_map(|entry| {
         let params = crate::engine::integrators::Params::defaults(entry.params);
         let missing = (entry.missing)(&scene.features, &params)?;
-        Some(Missing { integrator: entry.id, words: missing.words, why: missing.why })
+        Some(Missing {
+            integrator: entry.id,
+            words: missing.words,
+            why: missing.why,
+        })
     });
     Ok(SceneInfo {
         name: scene.name.clone(),
@@ -87,10 +105,18 @@ fn scene_info(name: &str) -> Result<SceneInfo, CliError> {
         materials: scene.material_names.clone(),
         bounds: [bounds.min.to_array(), bounds.max.to_array()],
         features: features(&scene.features),
-        left_out: left_out.map(|l| LeftOut { what: l.what.clone(), why: l.why.clone() }).collect(),
+        left_out: left_out
+            .map(|l| LeftOut {
+                what: l.what.clone(),
+                why: l.why.clone(),
+            })
+            .collect(),
         missing: missing.collect(),
         warnings: scene.warnings.clone(),
-        memory: Memory { geometry: scene.geometry.memory_bytes(), film: renderer.film_bytes() },
+        memory: Memory {
+            geometry: scene.geometry.memory_bytes(),
+            film: renderer.film_bytes(),
+        },
     })
 }
 
@@ -105,7 +131,10 @@ fn features(f: &SceneFeatures) -> Vec<&'static str> {
         (f.zero_size_lights, "lights of zero size"),
         (f.environment, "light at infinity"),
     ];
-    all.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect()
+    all.into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name)
+        .collect()
 }
 
 fn print_scene(s: &SceneInfo) -> Result<(), CliError> {
@@ -113,7 +142,10 @@ fn print_scene(s: &SceneInfo) -> Result<(), CliError> {
     print::line(&format!("{}: {}", s.name, s.description))?;
     print::line(&format!("picture: {}x{}", s.size[0], s.size[1]))?;
     let counts = (s.triangles, s.spheres, s.lights);
-    print::line(&format!("{} triangles, {} spheres, {} lights", counts.0, counts.1, counts.2))?;
+    print::line(&format!(
+        "{} triangles, {} spheres, {} lights",
+        counts.0, counts.1, counts.2
+    ))?;
     print::line(&format!("materials: {}", s.materials.join(", ")))?;
     print::line(&format!("bounds: {min} to {max}"))?;
     print::line(&format!("holds: {}", s.features.join(", ")))?;
@@ -121,13 +153,18 @@ fn print_scene(s: &SceneInfo) -> Result<(), CliError> {
         print::line(&format!("left out: {} ({})", left_out.what, left_out.why))?;
     }
     for m in &s.missing {
-        print::line(&format!("{} cannot find {}: {}", m.integrator, m.words, m.why))?;
+        print::line(&format!(
+            "{} cannot find {}: {}",
+            m.integrator, m.words, m.why
+        ))?;
     }
     for warning in &s.warnings {
         print::line(&format!("warning: {warning}"))?;
     }
     let (geometry, film) = (print::bytes(s.memory.geometry), print::bytes(s.memory.film));
-    print::line(&format!("memory: geometry {geometry}, sums of a picture with components {film}"))
+    print::line(&format!(
+        "memory: geometry {geometry}, sums of a picture with components {film}"
+    ))
 }
 
 #[derive(Serialize)]
@@ -150,7 +187,11 @@ fn image_info(path: &Path) -> Result<ImageInfo, CliError> {
     let picture = picture::read(path)?;
     let layers = picture.layers.into_iter().map(|layer| LayerInfo {
         mean: channel_means(&layer.pixels),
-        non_finite: layer.pixels.iter().filter(|p| p.iter().any(|x| !x.is_finite())).count(),
+        non_finite: layer
+            .pixels
+            .iter()
+            .filter(|p| p.iter().any(|x| !x.is_finite()))
+            .count(),
         label: layer.label,
         expression: layer.expression,
     });
@@ -164,8 +205,13 @@ fn image_info(path: &Path) -> Result<ImageInfo, CliError> {
 fn print_image(i: &ImageInfo) -> Result<(), CliError> {
     print::line(&format!("{}x{} pixels", i.size[0], i.size[1]))?;
     for layer in &i.layers {
-        let mean = layer.mean.map_or("none".to_owned(), |m| m.map(print::figure).join(" "));
-        let expression = layer.expression.as_ref().map_or(String::new(), |e| format!(" ({e})"));
+        let mean = layer
+            .mean
+            .map_or("none".to_owned(), |m| m.map(print::figure).join(" "));
+        let expression = layer
+            .expression
+            .as_ref()
+            .map_or(String::new(), |e| format!(" ({e})"));
         let bad = match layer.non_finite {
             0 => String::new(),
             n => format!(", {n} pixels not finite"),

@@ -61,7 +61,10 @@ fn show(rows: &[Row], json: bool, details: impl Fn(&Row) -> Vec<String>) -> Resu
     }
     let width = rows.iter().map(|row| row.id.len()).max().unwrap_or(0);
     for row in rows {
-        print::line(&format!("{:width$}  {}: {}", row.id, row.label, row.summary))?;
+        print::line(&format!(
+            "{:width$}  {}: {}",
+            row.id, row.label, row.summary
+        ))?;
         for detail in details(row) {
             print::line(&format!("{:width$}    {detail}", ""))?;
         }
@@ -71,11 +74,16 @@ fn show(rows: &[Row], json: bool, details: impl Fn(&Row) -> Vec<String>) -> Resu
 
 fn details(row: &Row) -> Vec<String> {
     let params = row.params.iter().flatten().map(|p| {
-        format!("--set {}=…  {} (default {}). {}", p.name, p.range, p.default, p.doc)
+        format!(
+            "--set {}=…  {} (default {}). {}",
+            p.name, p.range, p.default, p.doc
+        )
     });
-    let missing = row.missing.iter().flatten().map(|m| {
-        format!("cannot find {} with {}: {}", m.words, m.when, m.why)
-    });
+    let missing = row
+        .missing
+        .iter()
+        .flatten()
+        .map(|m| format!("cannot find {} with {}: {}", m.words, m.when, m.why));
     params.chain(missing).collect()
 }
 
@@ -114,18 +122,30 @@ fn missing(entry: &Entry) -> Vec<MissingWords> {
     let lights = "lights of zero size";
     let mut rows: Vec<MissingWords> = usual
         .iter()
-        .map(|m| MissingWords { when: lights.to_owned(), words: m.words, why: m.why })
+        .map(|m| MissingWords {
+            when: lights.to_owned(),
+            words: m.words,
+            why: m.why,
+        })
         .collect();
     for spec in entry.params {
-        let ParamKind::Choice(words) = spec.kind else { continue };
+        let ParamKind::Choice(words) = spec.kind else {
+            continue;
+        };
         for word in words {
             let mut params = defaults.clone();
             if params.set(entry.params, spec.name, word).is_err() {
                 continue;
             }
-            if let Some(m) = (entry.missing)(&features, &params).filter(|m| usual.as_ref() != Some(m)) {
+            if let Some(m) =
+                (entry.missing)(&features, &params).filter(|m| usual.as_ref() != Some(m))
+            {
                 let when = format!("{lights} and {}={word}", spec.name);
-                rows.push(MissingWords { when, words: m.words, why: m.why });
+                rows.push(MissingWords {
+                    when,
+                    words: m.words,
+                    why: m.why,
+                });
             }
         }
     }

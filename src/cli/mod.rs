@@ -59,7 +59,10 @@ fn run(cli: Cli) -> Result<(), CliError> {
 /// A word that stands alone is a scene; a mistyped command ends here too.
 fn check_name(name: &str) -> Result<&str, CliError> {
     let commands = Cli::command();
-    let commands: Vec<&str> = commands.get_subcommands().map(clap::Command::get_name).collect();
+    let commands: Vec<&str> = commands
+        .get_subcommands()
+        .map(clap::Command::get_name)
+        .collect();
     scene::check_exists(name, &commands).map(|()| name)
 }
 

@@ -10,9 +10,9 @@ use super::error::CliError;
 pub fn line(text: &str) -> Result<(), CliError> {
     let mut out = io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(CliError::failed(format!("standard output cannot be written: {error}")))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::failed(format!(
+            "standard output cannot be written: {error}"
+        ))),
         _ => Ok(()),
     }
 }
@@ -42,7 +42,11 @@ pub fn bytes(n: usize) -> String {
         x /= 1024.0;
         unit += 1;
     }
-    if unit == 0 { format!("{n} B") } else { format!("{x:.1} {}", UNITS[unit]) }
+    if unit == 0 {
+        format!("{n} B")
+    } else {
+        format!("{x:.1} {}", UNITS[unit])
+    }
 }
 
 /// Seconds as a person reads them.
@@ -71,7 +75,10 @@ mod tests {
 
     #[test]
     fn units_suit_their_numbers() {
-        assert_eq!((bytes(12), bytes(1536)), ("12 B".to_owned(), "1.5 KiB".to_owned()));
+        assert_eq!(
+            (bytes(12), bytes(1536)),
+            ("12 B".to_owned(), "1.5 KiB".to_owned())
+        );
         assert_eq!(duration(59.4), "59 s");
         assert_eq!(duration(61.0), "1 min 01 s");
         assert_eq!(duration(7265.0), "2 h 01 min");

@@ -68,14 +68,14 @@ pub fn listed() -> Result<Vec<Row>, CliError> {
 
 /// Prepares a scene, and its camera for a picture of `size` pixels.
 pub fn build(desc: &SceneDesc, size: UVec2) -> Result<(Arc<Scene>, Camera), CliError> {
-    let scene = Scene::build(desc).map_err(|error| CliError::usage(error.to_string()))?;
-    let camera = camera(&scene.camera, size);
+    let scene = Scene::build(desc).map_err(CliError::Usage)?;
+    let camera = camera(&scene.camera, size)?;
     Ok((Arc::new(scene), camera))
 }
 
 /// A camera for a picture of `size` pixels.
-pub fn camera(desc: &CameraDesc, size: UVec2) -> Camera {
-    Camera::new(desc).with_size(size)
+pub fn camera(desc: &CameraDesc, size: UVec2) -> Result<Camera, CliError> {
+    Ok(Camera::new(desc).map_err(CliError::Usage)?.with_size(size))
 }
 
 /// What a job needs computed.
@@ -99,7 +99,13 @@ pub fn parameters(id: &str, sets: &[String]) -> Result<(&'static Entry, Params),
         let Some((name, value)) = set.split_once('=') else {
             return Err(CliError::usage(format!(
                 "--set {set} has no value; write --set NAME=VALUE, such as --set {}",
-                entry.params.first().map_or("mode=mis".to_owned(), |p| format!("{}={}", p.name, p.default))
+                entry
+                    .params
+                    .first()
+                    .map_or("mode=mis".to_owned(), |p| format!(
+                        "{}={}",
+                        p.name, p.default
+                    ))
             )));
         };
         params.set(entry.params, name, value).map_err(|error| {
@@ -113,7 +119,11 @@ pub fn parameters(id: &str, sets: &[String]) -> Result<(&'static Entry, Params),
 
 /// All parameters as they would be typed.
 pub fn parameter_text(params: &Params) -> String {
-    params.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(" ")
+    params
+        .iter()
+        .map(|(name, value)| format!("{name}={value}"))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 #[cfg(test)]
@@ -124,10 +134,19 @@ mod tests {
     fn parameters_are_set_or_refused_with_the_nearest_name() {
         let sets = ["mode=hits".to_owned(), "roulette=7".to_owned()];
         let (entry, params) = parameters("path", &sets).unwrap();
-        assert_eq!((entry.id, params.choice("mode"), params.integer("roulette")), ("path", "hits", 7));
-        assert_eq!(parameter_text(&params), "mode=hits roulette=7 sampler=sobol");
+        assert_eq!(
+            (entry.id, params.choice("mode"), params.integer("roulette")),
+            ("path", "hits", 7)
+        );
+        assert_eq!(
+            parameter_text(&params),
+            "mode=hits roulette=7 sampler=sobol"
+        );
         let message = |id: &str, set: &str| {
-            parameters(id, &[set.to_owned()]).err().map(|e| e.to_string()).unwrap_or_default()
+            parameters(id, &[set.to_owned()])
+                .err()
+                .map(|e| e.to_string())
+                .unwrap_or_default()
         };
         assert!(message("pth", "").contains("did you mean \"path\"?"));
         assert!(message("path", "mdoe=mis").contains("did you mean \"mode\"?"));

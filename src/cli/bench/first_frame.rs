@@ -44,7 +44,11 @@ pub fn run(args: &FirstFrameArgs) -> Result<(), CliError> {
         changes: args.changes,
         width: args.size.x,
         height: args.size.y,
-        threads: if args.threads == 0 { cores } else { args.threads },
+        threads: if args.threads == 0 {
+            cores
+        } else {
+            args.threads
+        },
         p50_ms: percentile(&times, 0.5),
         p90_ms: percentile(&times, 0.9),
         p99_ms,
@@ -75,11 +79,17 @@ fn measure(args: &FirstFrameArgs) -> Result<Vec<f64>, CliError> {
     })
     .map_err(|error| CliError::failed(format!("the render cannot start: {error}")))?;
     let settings = Settings::new(&REGISTRY[0]);
-    let mut job = RenderJob { scene, camera, size: args.size, settings, navigating: true };
+    let mut job = RenderJob {
+        scene,
+        camera,
+        size: args.size,
+        settings,
+        navigating: true,
+    };
     let mut times = Vec::new();
     // The first picture of all knows nothing of the machine's speed and is not counted.
     for change in 0..=args.changes {
-        job.camera = scene::camera(&turned(&desc.camera, change as f32 * STEP), args.size);
+        job.camera = scene::camera(&turned(&desc.camera, change as f32 * STEP), args.size)?;
         let start = Instant::now();
         let epoch = session.submit(job.clone());
         wait_for(&session, epoch, &woken)?;
@@ -101,7 +111,10 @@ fn wait_for(session: &RenderSession, epoch: u64, woken: &Receiver<()>) -> Result
             };
         }
         woken.recv_timeout(PATIENCE).map_err(|_| {
-            CliError::failed(format!("no picture was shown within {} s", PATIENCE.as_secs()))
+            CliError::failed(format!(
+                "no picture was shown within {} s",
+                PATIENCE.as_secs()
+            ))
         })?;
     }
 }
@@ -109,13 +122,19 @@ fn wait_for(session: &RenderSession, epoch: u64, woken: &Receiver<()>) -> Result
 /// The view turned about its target by `angle`.
 fn turned(camera: &CameraDesc, angle: f32) -> CameraDesc {
     let turn = Quat::from_axis_angle(camera.up.normalize(), angle);
-    CameraDesc { position: camera.target + turn * (camera.position - camera.target), ..*camera }
+    CameraDesc {
+        position: camera.target + turn * (camera.position - camera.target),
+        ..*camera
+    }
 }
 
 /// Nearest-rank percentile of ascending values.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     let rank = (share * sorted.len() as f64).ceil() as usize;
-    sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(f64::NAN)
+    sorted
+        .get(rank.clamp(1, sorted.len().max(1)) - 1)
+        .copied()
+        .unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

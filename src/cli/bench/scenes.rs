@@ -30,15 +30,23 @@ struct Row {
 /// Runs the command.
 pub fn run(args: &BenchScenesArgs) -> Result<(), CliError> {
     let (integrator, params) = scene::parameters(&args.integrator, &args.set)?;
-    let settings =
-        Settings { integrator, params, layers: LayerSettings::default(), seed: 0 };
+    let settings = Settings {
+        integrator,
+        params,
+        layers: LayerSettings::default(),
+        seed: 0,
+    };
     let pool = render::thread_pool(1)?;
     let mut rows = Vec::new();
     for folder in &args.folders {
         eprintln!("{}: {} s", folder.display(), args.seconds);
         rows.push(pool.install(|| measure(folder, &settings, args.seconds))?);
     }
-    if args.json { print::json(&rows) } else { table(&rows) }
+    if args.json {
+        print::json(&rows)
+    } else {
+        table(&rows)
+    }
 }
 
 fn measure(folder: &Path, settings: &Settings, seconds: f64) -> Result<Row, CliError> {
@@ -47,7 +55,13 @@ fn measure(folder: &Path, settings: &Settings, seconds: f64) -> Result<Row, CliE
     let clock = RenderClock::start();
     let (scene, camera) = scene::build(&desc, reference.size)?;
     let size = reference.size;
-    let job = RenderJob { scene, camera, size, settings: settings.clone(), navigating: false };
+    let job = RenderJob {
+        scene,
+        camera,
+        size,
+        settings: settings.clone(),
+        navigating: false,
+    };
     let plan = scene::plan(&job)?;
     let mut renderer = Renderer::with_plan(&job, plan, clock);
     while renderer.clock().wall() < seconds {
@@ -56,10 +70,14 @@ fn measure(folder: &Path, settings: &Settings, seconds: f64) -> Result<Row, CliE
     }
     renderer.clock().pause();
     let frame = renderer.frame();
-    let metrics = reference.whole().and_then(|r| Metrics::new(&frame.layers[0].pixels, &r.pixels));
+    let metrics = reference
+        .whole()
+        .and_then(|r| Metrics::new(&frame.layers[0].pixels, &r.pixels));
     let Some(metrics) = metrics else {
         let folder = folder.display();
-        return Err(CliError::usage(format!("{folder}: the reference has no finite pixels")));
+        return Err(CliError::usage(format!(
+            "{folder}: the reference has no finite pixels"
+        )));
     };
     Ok(Row {
         scene: job.scene.name.clone(),
@@ -75,16 +93,34 @@ fn measure(folder: &Path, settings: &Settings, seconds: f64) -> Result<Row, CliE
 }
 
 fn table(rows: &[Row]) -> Result<(), CliError> {
-    let width = rows.iter().map(|row| row.scene.chars().count()).max().unwrap_or(0).max(5);
+    let width = rows
+        .iter()
+        .map(|row| row.scene.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(5);
     let line = |scene: &str, cells: [&str; 6]| {
         let cells = cells.map(|cell| format!("{cell:>10}")).join(" ");
         print::line(&format!("{scene:width$} {cells}"))
     };
-    line("scene", ["t_cpu", "spp", "Mrays/s", "samples/s", "relMSE", "K"])?;
+    line(
+        "scene",
+        ["t_cpu", "spp", "Mrays/s", "samples/s", "relMSE", "K"],
+    )?;
     for r in rows {
         let figures = [r.mrays_per_second, r.samples_per_second, r.relmse, r.k].map(figure);
         let [rays, samples, relmse, k] = &figures;
-        line(&r.scene, [&figure(r.t_cpu), &r.spp.to_string(), rays, samples, relmse, k])?;
+        line(
+            &r.scene,
+            [
+                &figure(r.t_cpu),
+                &r.spp.to_string(),
+                rays,
+                samples,
+                relmse,
+                k,
+            ],
+        )?;
     }
     Ok(())
 }

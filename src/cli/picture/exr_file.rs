@@ -33,7 +33,9 @@ pub fn encode(
     for (name, text) in texts {
         // Strings are UTF-8 by the format's definition; `Text` knows Latin-1 only.
         let value = AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
-        attributes.other.insert(Text::from_slice_unchecked(name.as_bytes()), value);
+        attributes
+            .other
+            .insert(Text::from_slice_unchecked(name.as_bytes()), value);
     }
     let size = (size.x as usize, size.y as usize);
     let channels = AnyChannels::sort(channels);
@@ -44,7 +46,11 @@ pub fn encode(
 }
 
 fn channel_name(label: &str, letter: &str) -> String {
-    if label == WHOLE { letter.to_owned() } else { format!("{label}.{letter}") }
+    if label == WHOLE {
+        letter.to_owned()
+    } else {
+        format!("{label}.{letter}")
+    }
 }
 
 /// Reads the first part of a file.
@@ -58,20 +64,34 @@ pub fn read(path: &Path) -> Result<Picture, Error> {
         .from_file(path)?;
     let part = image.layer_data;
     let attributes = part.attributes.other.iter().chain(&image.attributes.other);
-    let texts: BTreeMap<String, String> =
-        attributes.filter_map(|(name, value)| Some((utf8(name), text_of(value)?))).collect();
+    let texts: BTreeMap<String, String> = attributes
+        .filter_map(|(name, value)| Some((utf8(name), text_of(value)?)))
+        .collect();
     let mut layers: Vec<Layer> = Vec::new();
     for channel in &part.channel_data.list {
         let name = utf8(&channel.name);
         let (label, letter) = name.rsplit_once('.').unwrap_or((WHOLE, &name));
-        let Some(c) = ["R", "G", "B"].iter().position(|known| *known == letter) else { continue };
-        let index = layers.iter().position(|layer| layer.label == label).unwrap_or_else(|| {
-            let pixels = vec![[0.0; 3]; part.size.area()];
-            let expression = texts.get(label).cloned();
-            layers.push(Layer { label: label.to_owned(), expression, pixels });
-            layers.len() - 1
-        });
-        for (pixel, value) in layers[index].pixels.iter_mut().zip(channel.sample_data.values_as_f32()) {
+        let Some(c) = ["R", "G", "B"].iter().position(|known| *known == letter) else {
+            continue;
+        };
+        let index = layers
+            .iter()
+            .position(|layer| layer.label == label)
+            .unwrap_or_else(|| {
+                let pixels = vec![[0.0; 3]; part.size.area()];
+                let expression = texts.get(label).cloned();
+                layers.push(Layer {
+                    label: label.to_owned(),
+                    expression,
+                    pixels,
+                });
+                layers.len() - 1
+            });
+        for (pixel, value) in layers[index]
+            .pixels
+            .iter_mut()
+            .zip(channel.sample_data.values_as_f32())
+        {
             pixel[c] = value;
         }
     }
@@ -111,11 +131,21 @@ mod tests {
     #[test]
     fn layers_and_texts_come_back_as_they_were() {
         let size = UVec2::new(3, 2);
-        let ramp = |start: f32| (0..6).map(|i| [start + i as f32, -0.0, 1e-30]).collect::<Vec<_>>();
+        let ramp = |start: f32| {
+            (0..6)
+                .map(|i| [start + i as f32, -0.0, 1e-30])
+                .collect::<Vec<_>>()
+        };
         let (whole, direct, expr) = (ramp(0.5), ramp(-2.0), ramp(1e9));
-        let layers =
-            [(WHOLE, &whole[..]), ("direct", &direct[..]), ("expr1", &expr[..])];
-        let texts = [("expr1".to_owned(), "LD.*E".to_owned()), ("a:b".to_owned(), "π ≠ 3".to_owned())];
+        let layers = [
+            (WHOLE, &whole[..]),
+            ("direct", &direct[..]),
+            ("expr1", &expr[..]),
+        ];
+        let texts = [
+            ("expr1".to_owned(), "LD.*E".to_owned()),
+            ("a:b".to_owned(), "π ≠ 3".to_owned()),
+        ];
         let bytes = encode(size, &layers, &texts).unwrap();
         assert_eq!(bytes, encode(size, &layers, &texts).unwrap());
 
@@ -130,6 +160,10 @@ mod tests {
             assert_eq!(layer.pixels, pixels);
         }
         assert_eq!(picture.layers[2].key(), "LD.*E");
-        assert!(picture.attributes.contains(&("a:b".to_owned(), "π ≠ 3".to_owned())));
+        assert!(
+            picture
+                .attributes
+                .contains(&("a:b".to_owned(), "π ≠ 3".to_owned()))
+        );
     }
 }

@@ -16,14 +16,20 @@ pub enum Format {
     Hdr,
 }
 
-const FORMATS: [(&str, Format); 3] =
-    [("exr", Format::Exr), ("png", Format::Png), ("hdr", Format::Hdr)];
+const FORMATS: [(&str, Format); 3] = [
+    ("exr", Format::Exr),
+    ("png", Format::Png),
+    ("hdr", Format::Hdr),
+];
 
 impl Format {
     /// By the end of the file's name.
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        FORMATS.iter().find(|(name, _)| *name == extension).map(|(_, format)| *format)
+        FORMATS
+            .iter()
+            .find(|(name, _)| *name == extension)
+            .map(|(_, format)| *format)
     }
 }
 
@@ -40,7 +46,10 @@ impl Output {
     /// A file whose name says a format that can be written.
     pub fn new(path: &Path) -> Result<Self, CliError> {
         let Some(format) = Format::of(path) else {
-            let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+            let extension = path
+                .extension()
+                .and_then(|e| e.to_str())
+                .unwrap_or_default();
             let hint = did_you_mean(extension, FORMATS.map(|(name, _)| name));
             return Err(CliError::usage(format!(
                 "\"{}\" says no format that can be written; its name must end in .exr, .png or \
@@ -48,7 +57,10 @@ impl Output {
                 path.display()
             )));
         };
-        Ok(Self { path: path.to_owned(), format })
+        Ok(Self {
+            path: path.to_owned(),
+            format,
+        })
     }
 
     /// Fails now, not after an hour of rendering, if the file cannot be written.
@@ -69,12 +81,17 @@ impl Output {
         }
         let probe = tempfile::tempfile_in(folder);
         probe.map(drop).map_err(|error| {
-            CliError::failed(format!("nothing can be written into {}: {error}", folder.display()))
+            CliError::failed(format!(
+                "nothing can be written into {}: {error}",
+                folder.display()
+            ))
         })
     }
 }
 
 /// The folder that holds `path`.
 pub fn folder(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    path.parent()
+        .filter(|parent| !parent.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }

@@ -28,11 +28,14 @@ pub fn read(path: &Path) -> Result<Picture, CliError> {
 }
 
 fn flat(path: &Path, encoding: Encoding) -> Result<Picture, CliError> {
-    let image =
-        image::read(path, encoding).map_err(|error| CliError::usage(error.to_string()))?;
+    let image = image::read(path, encoding).map_err(|error| CliError::usage(error.to_string()))?;
     Ok(Picture {
         size: UVec2::new(image.width as u32, image.height as u32),
-        layers: vec![Layer { label: WHOLE.to_owned(), expression: None, pixels: image.pixels }],
+        layers: vec![Layer {
+            label: WHOLE.to_owned(),
+            expression: None,
+            pixels: image.pixels,
+        }],
         standard_errors: Vec::new(),
         attributes: Vec::new(),
     })
@@ -40,7 +43,11 @@ fn flat(path: &Path, encoding: Encoding) -> Result<Picture, CliError> {
 
 /// Reads a reference: a picture, or `ref.exr` in a folder together with what lies beside it.
 pub fn read_reference(path: &Path) -> Result<Picture, CliError> {
-    let main = if path.is_dir() { path.join("ref.exr") } else { path.to_owned() };
+    let main = if path.is_dir() {
+        path.join("ref.exr")
+    } else {
+        path.to_owned()
+    };
     let mut picture = read(&main)?;
     if main.file_name().is_some_and(|name| name == "ref.exr") {
         read_beside(folder(&main), &mut picture)?;
@@ -74,6 +81,12 @@ fn one_layer(path: &Path, label: &str, size: UVec2) -> Result<Option<Layer>, Cli
             path.display()
         )));
     }
-    let whole = picture.layers.into_iter().find(|layer| layer.label == WHOLE);
-    Ok(whole.map(|layer| Layer { label: label.to_owned(), ..layer }))
+    let whole = picture
+        .layers
+        .into_iter()
+        .find(|layer| layer.label == WHOLE);
+    Ok(whole.map(|layer| Layer {
+        label: label.to_owned(),
+        ..layer
+    }))
 }

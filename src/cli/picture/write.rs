@@ -21,15 +21,26 @@ impl Attributes {
     /// Of a render.
     pub fn of(scene: &str, options: &RenderOptions, frame: &Frame) -> Self {
         let settings = &options.settings;
-        let error = frame.relative_error.map_or("unknown".to_owned(), |e| e.to_string());
+        let error = frame
+            .relative_error
+            .map_or("unknown".to_owned(), |e| e.to_string());
         let mut texts = vec![
             ("lightscope:scene".to_owned(), scene.to_owned()),
-            ("lightscope:integrator".to_owned(), settings.integrator.id.to_owned()),
-            ("lightscope:parameters".to_owned(), parameter_text(&settings.params)),
+            (
+                "lightscope:integrator".to_owned(),
+                settings.integrator.id.to_owned(),
+            ),
+            (
+                "lightscope:parameters".to_owned(),
+                parameter_text(&settings.params),
+            ),
             ("lightscope:spp".to_owned(), frame.passes.to_string()),
             ("lightscope:seconds".to_owned(), frame.t_wall.to_string()),
             ("lightscope:seed".to_owned(), settings.seed.to_string()),
-            ("lightscope:version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+            (
+                "lightscope:version".to_owned(),
+                env!("CARGO_PKG_VERSION").to_owned(),
+            ),
             ("lightscope:error".to_owned(), error),
         ];
         for (i, expression) in settings.layers.expressions.iter().enumerate() {
@@ -40,15 +51,18 @@ impl Attributes {
 }
 
 /// Writes a frame in place of what was there.
-pub fn write(options: &RenderOptions, frame: &Frame, attributes: &Attributes) -> Result<(), CliError> {
+pub fn write(
+    options: &RenderOptions,
+    frame: &Frame,
+    attributes: &Attributes,
+) -> Result<(), CliError> {
     let Output { path, format } = &options.output;
     let bytes = match format {
         Format::Exr => exr(options, frame, attributes),
         Format::Png => png(options, frame),
         Format::Hdr => hdr(frame),
     };
-    let bytes =
-        bytes.map_err(|error| CliError::failed(format!("{}: {error}", path.display())))?;
+    let bytes = bytes.map_err(|error| CliError::failed(format!("{}: {error}", path.display())))?;
     atomic::write(path, &bytes)
         .map_err(|error| CliError::failed(format!("{} cannot be written: {error}", path.display())))
 }
@@ -82,15 +96,20 @@ fn png(options: &RenderOptions, frame: &Frame) -> Result<Vec<u8>, String> {
     let image = RgbImage::from_raw(frame.size.x, frame.size.y, pixels.collect())
         .ok_or("the frame is incomplete")?;
     let mut bytes = Cursor::new(Vec::new());
-    image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| error.to_string())?;
+    image
+        .write_to(&mut bytes, ImageFormat::Png)
+        .map_err(|error| error.to_string())?;
     Ok(bytes.into_inner())
 }
 
 /// The format knows no NaN: such pixels are black.
 fn hdr(frame: &Frame) -> Result<Vec<u8>, String> {
     let number = |x: f32| if x.is_nan() { 0.0 } else { x };
-    let pixels: Vec<Rgb<f32>> =
-        frame.layers[0].pixels.iter().map(|rgb| Rgb(rgb.map(number))).collect();
+    let pixels: Vec<Rgb<f32>> = frame.layers[0]
+        .pixels
+        .iter()
+        .map(|rgb| Rgb(rgb.map(number)))
+        .collect();
     let mut bytes = Vec::new();
     HdrEncoder::new(&mut bytes)
         .encode(&pixels, frame.size.x as usize, frame.size.y as usize)

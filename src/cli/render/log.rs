@@ -46,12 +46,19 @@ impl Log {
         reference: Option<&Path>,
         size: UVec2,
     ) -> Result<Self, CliError> {
-        let reference = reference.map(|path| whole_of_size(path, size)).transpose()?;
+        let reference = reference
+            .map(|path| whole_of_size(path, size))
+            .transpose()?;
         let file = file.map(|path| {
             let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
             Ok((path.to_owned(), BufWriter::new(file)))
         });
-        Ok(Self { file: file.transpose()?, reference, frame: None, last: None })
+        Ok(Self {
+            file: file.transpose()?,
+            reference,
+            frame: None,
+            last: None,
+        })
     }
 
     /// Writes down the pass that was just completed. The clock stands still meanwhile.
@@ -63,8 +70,19 @@ impl Log {
         self.evaluate(renderer);
         let (pass, rays) = (renderer.passes(), renderer.stats().rays);
         let (t_wall, t_cpu) = (renderer.clock().wall(), renderer.clock().cpu());
-        let errors = self.last.map(|m| Errors { rmse: m.rmse, relmse: m.relmse, nmse: m.nmse });
-        let line = Line { t_wall, t_cpu, pass, spp: pass, rays, errors };
+        let errors = self.last.map(|m| Errors {
+            rmse: m.rmse,
+            relmse: m.relmse,
+            nmse: m.nmse,
+        });
+        let line = Line {
+            t_wall,
+            t_cpu,
+            pass,
+            spp: pass,
+            rays,
+            errors,
+        };
         if let Some((path, file)) = &mut self.file {
             serde_json::to_writer(&mut *file, &line)
                 .map_err(std::io::Error::from)
@@ -83,8 +101,12 @@ impl Log {
     }
 
     fn evaluate(&mut self, renderer: &Renderer) {
-        let Some(reference) = &self.reference else { return };
-        let frame = self.frame.get_or_insert_with(|| Frame::empty(renderer.plan().clone()));
+        let Some(reference) = &self.reference else {
+            return;
+        };
+        let frame = self
+            .frame
+            .get_or_insert_with(|| Frame::empty(renderer.plan().clone()));
         renderer.snapshot(None, 0, frame);
         self.last = Metrics::new(&frame.layers[0].pixels, reference);
     }
@@ -102,9 +124,15 @@ fn whole_of_size(path: &Path, size: UVec2) -> Result<Vec<[f32; 3]>, CliError> {
             size.y
         )));
     }
-    let whole = reference.layers.into_iter().find(|layer| layer.label == picture::WHOLE);
+    let whole = reference
+        .layers
+        .into_iter()
+        .find(|layer| layer.label == picture::WHOLE);
     whole.map(|layer| layer.pixels).ok_or_else(|| {
-        CliError::usage(format!("the reference {} has no channels R, G and B", path.display()))
+        CliError::usage(format!(
+            "the reference {} has no channels R, G and B",
+            path.display()
+        ))
     })
 }
 

@@ -29,7 +29,9 @@ use stop::State;
 pub fn run(args: RenderArgs) -> Result<(), CliError> {
     let options = RenderOptions::new(&args)?;
     let desc = scene::read(&args.scene)?;
-    let size = options.size.unwrap_or(UVec2::new(desc.camera.width, desc.camera.height));
+    let size = options
+        .size
+        .unwrap_or(UVec2::new(desc.camera.width, desc.camera.height));
     let log = Log::open(args.log.as_deref(), args.reference.as_deref(), size)?;
     let cancel = cancel_on_interrupt()?;
     let pool = thread_pool(options.threads)?;
@@ -54,7 +56,13 @@ fn render(
 ) -> Result<Rendered, CliError> {
     let clock = RenderClock::start();
     let (scene, camera) = scene::build(&desc, size)?;
-    let job = RenderJob { scene, camera, size, settings: options.settings.clone(), navigating: false };
+    let job = RenderJob {
+        scene,
+        camera,
+        size,
+        settings: options.settings.clone(),
+        navigating: false,
+    };
     let plan = scene::plan(&job)?;
     notes::print_before(&job, &plan, rayon::current_num_threads());
     let mut renderer = Renderer::with_plan(&job, plan, clock);
@@ -66,7 +74,10 @@ fn render(
             break;
         }
         log.pass(&mut renderer)?;
-        let state = State::of(&mut renderer, options.stop.error.is_some() || progress.is_due());
+        let state = State::of(
+            &mut renderer,
+            options.stop.error.is_some() || progress.is_due(),
+        );
         progress.update(&state);
         if let Some(note) = options.stop.reached(&state) {
             progress.clear();
@@ -76,17 +87,27 @@ fn render(
     }
     progress.clear();
     if renderer.passes() == 0 {
-        return Err(CliError::failed("stopped before the first pass was complete; nothing was written"));
+        return Err(CliError::failed(
+            "stopped before the first pass was complete; nothing was written",
+        ));
     }
     renderer.clock().pause();
     let (frame, errors) = (renderer.frame(), log.finish(&renderer));
-    Ok(Rendered { frame, scene: job.scene.name.clone(), interrupted, errors })
+    Ok(Rendered {
+        frame,
+        scene: job.scene.name.clone(),
+        interrupted,
+        errors,
+    })
 }
 
 fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Result<(), CliError> {
     let frame = &rendered.frame;
     if rendered.interrupted {
-        eprintln!("note: interrupted; the picture holds the {} passes that were complete", frame.passes);
+        eprintln!(
+            "note: interrupted; the picture holds the {} passes that were complete",
+            frame.passes
+        );
     }
     let attributes = Attributes::of(&rendered.scene, options, frame);
     picture::write(options, frame, &attributes)?;

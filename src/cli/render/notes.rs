@@ -26,7 +26,10 @@ pub fn print_before(job: &RenderJob, plan: &RenderPlan, threads: usize) {
         eprintln!("left out: {} ({})", left_out.what, left_out.why);
     }
     if let Some(missing) = (settings.integrator.missing)(&job.scene.features, &settings.params) {
-        eprintln!("warning: {id} cannot find {} here: {}", missing.words, missing.why);
+        eprintln!(
+            "warning: {id} cannot find {} here: {}",
+            missing.words, missing.why
+        );
     }
 }
 
@@ -85,14 +88,23 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
     }
     if f.non_finite > 0 {
         let first = frame.stats.first_non_finite.map_or_else(String::new, place);
-        eprintln!("warning: {} samples were not finite and were left out{first}", f.non_finite);
+        eprintln!(
+            "warning: {} samples were not finite and were left out{first}",
+            f.non_finite
+        );
     }
     if f.cut_paths > 0 {
-        eprintln!("warning: {} paths were cut at the largest number of events", f.cut_paths);
+        eprintln!(
+            "warning: {} paths were cut at the largest number of events",
+            f.cut_paths
+        );
     }
 }
 
 fn place(sample: BadSample) -> String {
     let (pixel, pass) = (sample.pixel, sample.pass);
-    format!("; the first in pixel ({}, {}), pass {pass}", pixel.x, pixel.y)
+    format!(
+        "; the first in pixel ({}, {}), pass {pass}",
+        pixel.x, pixel.y
+    )
 }

@@ -58,7 +58,12 @@ impl RenderOptions {
         output.check_writable()?;
         Ok(Self {
             output,
-            settings: Settings { integrator, params, layers, seed: args.seed },
+            settings: Settings {
+                integrator,
+                params,
+                layers,
+                seed: args.seed,
+            },
             stop: Stop::new(args.spp, args.seconds, args.error),
             size: args.size,
             threads: args.threads,
@@ -72,8 +77,9 @@ impl RenderOptions {
 fn layers(args: &RenderArgs) -> Result<LayerSettings, CliError> {
     let mut expressions = Vec::new();
     for text in &args.expression {
-        let expression: Expression =
-            text.parse().map_err(|error: ExpressionError| CliError::usage(error.to_string()))?;
+        let expression: Expression = text
+            .parse()
+            .map_err(|error: ExpressionError| CliError::usage(error.to_string()))?;
         expressions.push(expression);
     }
     PathClasses::with_components(&expressions)

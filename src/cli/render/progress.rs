@@ -27,7 +27,11 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("[{bar:30}] {msg}") {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { bar, stop: *stop, shown: None }
+        Self {
+            bar,
+            stop: *stop,
+            shown: None,
+        }
     }
 
     /// Whether the next update will be shown.

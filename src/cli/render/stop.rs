@@ -37,9 +37,18 @@ impl State {
     /// time of the render.
     pub fn of(renderer: &mut Renderer, with_error: bool) -> Self {
         renderer.clock().pause();
-        let error = if with_error { renderer.relative_error() } else { None };
+        let error = if with_error {
+            renderer.relative_error()
+        } else {
+            None
+        };
         let t_wall = renderer.clock().wall();
-        let state = Self { passes: renderer.passes(), t_wall, rays: renderer.stats().rays, error };
+        let state = Self {
+            passes: renderer.passes(),
+            t_wall,
+            rays: renderer.stats().rays,
+            error,
+        };
         renderer.clock().resume();
         state
     }
@@ -49,7 +58,11 @@ impl Stop {
     /// The conditions given, or the default number of samples.
     pub fn new(spp: Option<u64>, seconds: Option<f64>, error: Option<f64>) -> Self {
         let none = seconds.is_none() && error.is_none();
-        Self { spp: spp.or(none.then_some(DEFAULT_SPP)), seconds, error }
+        Self {
+            spp: spp.or(none.then_some(DEFAULT_SPP)),
+            seconds,
+            error,
+        }
     }
 
     /// Why the render is done; none while it is not.
@@ -74,8 +87,15 @@ impl Stop {
     pub fn share(&self, state: &State) -> f64 {
         let spp = self.spp.map(|spp| state.passes as f64 / spp as f64);
         let seconds = self.seconds.map(|seconds| state.t_wall / seconds);
-        let error = self.error.zip(state.error).map(|(goal, e)| (goal / e).powi(2));
-        [spp, seconds, error].into_iter().flatten().fold(0.0, f64::max).min(1.0)
+        let error = self
+            .error
+            .zip(state.error)
+            .map(|(goal, e)| (goal / e).powi(2));
+        [spp, seconds, error]
+            .into_iter()
+            .flatten()
+            .fold(0.0, f64::max)
+            .min(1.0)
     }
 }
 
@@ -84,7 +104,12 @@ mod tests {
     use super::*;
 
     fn state(passes: u64, t_wall: f64, error: Option<f64>) -> State {
-        State { passes, t_wall, rays: 0, error }
+        State {
+            passes,
+            t_wall,
+            rays: 0,
+            error,
+        }
     }
 
     #[test]
@@ -93,7 +118,10 @@ mod tests {
         assert_eq!(stop.reached(&state(9, 1.9, Some(0.11))), None);
         assert_eq!(stop.reached(&state(10, 0.0, None)), Some("samples reached"));
         assert_eq!(stop.reached(&state(1, 2.0, None)), Some("time reached"));
-        assert_eq!(stop.reached(&state(2, 0.1, Some(0.1))), Some("error reached"));
+        assert_eq!(
+            stop.reached(&state(2, 0.1, Some(0.1))),
+            Some("error reached")
+        );
     }
 
     #[test]

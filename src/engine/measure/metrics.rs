@@ -156,8 +156,11 @@ mod tests {
     #[test]
     fn figures_agree_with_values_computed_by_hand() {
         // Differences 1, 0, −2 | 0, 0, 3; reference 1, 2, 4 | 0, 0, 1: mean 8/6.
-        let m = Metrics::new(&[[2.0, 2.0, 2.0], [0.0, 0.0, 4.0]], &[[1.0, 2.0, 4.0], [0.0, 0.0, 1.0]])
-            .unwrap();
+        let m = Metrics::new(
+            &[[2.0, 2.0, 2.0], [0.0, 0.0, 4.0]],
+            &[[1.0, 2.0, 4.0], [0.0, 0.0, 1.0]],
+        )
+        .unwrap();
         assert_near(m.rmse, (14.0f64 / 6.0).sqrt());
         assert_near(m.mae, 1.0);
         assert_near(m.bias, 2.0 / 6.0);
@@ -195,9 +198,15 @@ mod tests {
 
     #[test]
     fn normalised_error_does_not_depend_on_exposure() {
-        let (x, r) = ([[2.0, 3.0, 5.0], [1.0, 0.5, 0.25]], [[2.5, 2.0, 5.5], [0.5; 3]]);
+        let (x, r) = (
+            [[2.0, 3.0, 5.0], [1.0, 0.5, 0.25]],
+            [[2.5, 2.0, 5.5], [0.5; 3]],
+        );
         let brighter = |image: [[f32; 3]; 2]| image.map(|p| p.map(|v| v * 1024.0));
-        let (a, b) = (Metrics::new(&x, &r).unwrap(), Metrics::new(&brighter(x), &brighter(r)).unwrap());
+        let (a, b) = (
+            Metrics::new(&x, &r).unwrap(),
+            Metrics::new(&brighter(x), &brighter(r)).unwrap(),
+        );
         assert_near(a.nmse.unwrap(), b.nmse.unwrap());
         assert!(b.relmse < a.relmse * 2.0 && b.rmse > a.rmse * 1000.0);
     }

@@ -1,0 +1,145 @@
+//! Results on standard output.
+
+use super::support::{cornell, folder, json, reference, render, stdout, succeeds};
+
+#[test]
+fn layers_are_compared_one_by_one() {
+    let dir = folder();
+    let at = dir.path();
+    let more = ["--spp", "2", "--components", "--expression", "LDE"];
+    render(at, "a.exr", &more);
+    render(
+        at,
+        "b.exr",
+        &[
+            "--spp",
+            "2",
+            "--components",
+            "--expression",
+            "LS+E",
+            "--expression",
+            "LDE",
+        ],
+    );
+    let rows = json(at, &["compare", "a.exr", "b.exr", "--json"]);
+    let layers: Vec<&str> = rows
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|r| r["layer"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        layers,
+        ["whole", "direct", "specular", "caustic", "indirect", "LDE"]
+    );
+    for row in rows.as_array().unwrap() {
+        for name in ["rmse", "mae", "bias", "relmse", "smape"] {
+            assert_eq!(row[name].as_f64(), Some(0.0), "{name} of {row}");
+        }
+    }
+    let scene = cornell();
+    succeeds(
+        at,
+        &[
+            "render",
+            &scene,
+            "-o",
+            "c.exr",
+            "--spp",
+            "4",
+            "--components",
+        ],
+    );
+    let folder = reference("cornell-diffuse");
+    let rows = json(at, &["compare", "c.exr", &folder, "--json"]);
+    assert_eq!(rows.as_array().unwrap().len(), 5);
+    for row in rows.as_array().unwrap() {
+        assert!(row["reference_noise"]["rmse"].is_number(), "{row}");
+        assert!(row["rmse"].as_f64().unwrap() < 1.0, "{row}");
+    }
+    let table = stdout(&succeeds(at, &["compare", "c.exr", &folder]));
+    assert!(
+        table.contains("relmse") && table.contains("the reference's own noise"),
+        "{table}"
+    );
+}
+
+#[test]
+fn json_output_is_one_value_and_nothing_else() {
+    let dir = folder();
+    let at = dir.path();
+    for list in ["scenes", "integrators"] {
+        let rows = json(at, &["list", list, "--json"]);
+        assert!(!rows.as_array().unwrap().is_empty());
+        for row in rows.as_array().unwrap() {
+            for name in ["id", "label", "summary"] {
+                assert!(!row[name].as_str().unwrap().is_empty(), "{name} of {row}");
+            }
+        }
+        let ids = rows
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|r| r["id"].as_str().unwrap());
+        let text = stdout(&succeeds(at, &["list", list]));
+        ids.for_each(|id| assert!(text.contains(id), "{id} in {text}"));
+    }
+    let integrators = json(at, &["list", "integrators", "--json"]);
+    let path = integrators
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|r| r["id"] == "path")
+        .unwrap();
+    assert!(
+        path["params"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|p| p["name"] == "mode" && p["default"] == "mis")
+    );
+    assert!(
+        path["missing"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|m| m["words"] == "LS.*E"),
+        "{path}"
+    );
+
+    let scene = cornell();
+    let info = json(at, &["info", &scene, "--json"]);
+    assert_eq!(info["name"], "cornell-diffuse");
+    assert_eq!(
+        (info["size"][0].as_u64(), info["spheres"].as_u64()),
+        (Some(64), Some(0))
+    );
+    assert!(info["triangles"].as_u64().unwrap() > 10 && info["lights"].as_u64().unwrap() >= 1);
+    assert!(info["features"].to_string().contains("diffuse"));
+
+    let frames = [
+        "bench",
+        "first-frame",
+        "--changes",
+        "3",
+        "--size",
+        "64x36",
+        "--json",
+    ];
+    let bench = json(at, &[&frames[..], &["--scene", &scene]].concat());
+    let ms = |name: &str| bench[name].as_f64().unwrap();
+    assert!(0.0 < ms("p50_ms") && ms("p50_ms") <= ms("p99_ms") && ms("p99_ms") <= ms("max_ms"));
+
+    let folder = reference("point-light");
+    let rows = json(
+        at,
+        &["bench", "scenes", &folder, "--seconds", "0.2", "--json"],
+    );
+    let row = &rows[0];
+    let (relmse, t_cpu) = (
+        row["relmse"].as_f64().unwrap(),
+        row["t_cpu"].as_f64().unwrap(),
+    );
+    assert_eq!(row["scene"], "point-light");
+    assert!((row["k"].as_f64().unwrap() - 1000.0 * relmse * t_cpu).abs() < 1e-9);
+}

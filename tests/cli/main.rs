@@ -1,0 +1,7 @@
+//! The program itself: exit codes, sentences, files.
+
+mod figures;
+mod files;
+mod running;
+mod support;
+mod usage;
