@@ -37,13 +37,20 @@ fn runs(scene: &str, integrator: &str, set: &[(&str, &str)], passes: u64) -> (Ve
 }
 
 fn layer_blocks(frames: &[Frame], layer: usize, width: usize) -> Blocks {
-    let runs: Vec<&[[f32; 3]]> = frames.iter().map(|f| f.layers[layer].pixels.as_slice()).collect();
+    let runs: Vec<&[[f32; 3]]> = frames
+        .iter()
+        .map(|f| f.layers[layer].pixels.as_slice())
+        .collect();
     Blocks::from_runs(&runs, width)
 }
 
 fn agrees_with_reference(scene: &str, set: &[(&str, &str)], passes: u64) {
     let (frames, width) = runs(scene, "path", set, passes);
-    let whole = frames.iter().map(|f| mean(&f.layers[0].pixels)).sum::<f64>() / RUNS as f64;
+    let whole = frames
+        .iter()
+        .map(|f| mean(&f.layers[0].pixels))
+        .sum::<f64>()
+        / RUNS as f64;
     let mut complaints = Vec::new();
     for (index, layer) in LAYERS.iter().enumerate() {
         assert_eq!(frames[0].layers[index].label, *layer);
@@ -117,7 +124,11 @@ fn modes_and_samplers_agree_with_each_other() {
             let a = layer_blocks(&frames, index, width);
             let b = layer_blocks(&base, index, width);
             let verdict = compare(layer, &a, &b, whole, LAYERS.len());
-            assert!(verdict.complaints.is_empty(), "{set:?}: {}", verdict.complaints.join("\n"));
+            assert!(
+                verdict.complaints.is_empty(),
+                "{set:?}: {}",
+                verdict.complaints.join("\n")
+            );
         }
     }
 }

@@ -30,7 +30,11 @@ fn one_thread_and_eight_give_the_same_bits_in_every_layer() {
             for threads in [2, 8, 16] {
                 let many = render_with_threads(&job, 3, threads);
                 assert_eq!(one.stats, many.stats);
-                assert!(bits(&one) == bits(&many), "{} with {threads} threads", entry.id);
+                assert!(
+                    bits(&one) == bits(&many),
+                    "{} with {threads} threads",
+                    entry.id
+                );
             }
         }
     }
@@ -51,8 +55,13 @@ fn a_cancelled_pass_leaves_no_trace() {
     assert_eq!(bits(&renderer.frame()), before);
 
     // And what follows is what would have followed.
-    renderer.render_pass(&Cancel::never()).expect("never cancelled");
-    assert_eq!(bits(&renderer.frame()), bits(&render_with_threads(&job, 2, 2)));
+    renderer
+        .render_pass(&Cancel::never())
+        .expect("never cancelled");
+    assert_eq!(
+        bits(&renderer.frame()),
+        bits(&render_with_threads(&job, 2, 2))
+    );
 }
 
 #[test]

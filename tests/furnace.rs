@@ -32,7 +32,10 @@ fn white_objects_vanish_in_every_pixel() {
         let frame = render(&job, 16);
         for (i, pixel) in frame.layers[0].pixels.iter().enumerate() {
             for value in pixel {
-                assert!((value - 1.0).abs() <= 1e-5, "{material}: pixel {i} is {value}");
+                assert!(
+                    (value - 1.0).abs() <= 1e-5,
+                    "{material}: pixel {i} is {value}"
+                );
             }
         }
     }
@@ -54,14 +57,24 @@ fn plastic_and_weighted_strategies_vanish_on_the_mean() {
                 render(&job, 1024)
             })
             .collect();
-        let runs: Vec<&[[f32; 3]]> = frames.iter().map(|f| f.layers[0].pixels.as_slice()).collect();
+        let runs: Vec<&[[f32; 3]]> = frames
+            .iter()
+            .map(|f| f.layers[0].pixels.as_slice())
+            .collect();
         let found = runs.iter().map(|r| mean(r)).sum::<f64>() / 16.0;
-        assert!((found - 1.0).abs() < 1e-4, "{material} {set:?}: mean {found}");
+        assert!(
+            (found - 1.0).abs() < 1e-4,
+            "{material} {set:?}: mean {found}"
+        );
         let exact = Blocks::exact(1.0, 32, 32);
         let verdict = compare("whole", &Blocks::from_runs(&runs, 32), &exact, 1.0, 1);
         // Blocks without noise must be equal to 1e-5, but 1024 roundings of f32 may add up to
         // more than the 0 of a constant image: they too are part of the runs' variance.
-        assert!(verdict.complaints.is_empty(), "{material} {set:?}: {:?}", verdict.complaints);
+        assert!(
+            verdict.complaints.is_empty(),
+            "{material} {set:?}: {:?}",
+            verdict.complaints
+        );
     }
 }
 
@@ -71,8 +84,9 @@ fn ggx_shows_its_directional_albedo() {
     use lightscope::engine::event::Event;
     use lightscope::engine::sampling::{Sampler, SobolSampler, Stream, warp};
     for alpha in ["0.05", "0.3", "1.0"] {
-        let material =
-            format!(r#"{{ type = "ggx_conductor", specular_reflectance = [1, 1, 1], alpha = {alpha} }}"#);
+        let material = format!(
+            r#"{{ type = "ggx_conductor", specular_reflectance = [1, 1, 1], alpha = {alpha} }}"#
+        );
         let scene = furnace(&material);
         // A pencil of rays at one point of the sphere: the pixel in the middle of a telephoto.
         let job = job(&scene, "path", &[("mode", "hits"), ("roulette", "30")]);
@@ -85,8 +99,13 @@ fn ggx_shows_its_directional_albedo() {
             .sum::<f64>()
             / 4.0;
         // The same integral, by uniform directions and the evaluated f alone.
-        let ray = job.camera.with_size(job.size).generate_ray(glam::Vec2::splat(16.0), glam::Vec2::ZERO);
-        let si = scene.intersect(&ray, || 0.5).expect("the sphere is in the middle");
+        let ray = job
+            .camera
+            .with_size(job.size)
+            .generate_ray(glam::Vec2::splat(16.0), glam::Vec2::ZERO);
+        let si = scene
+            .intersect(&ray, || 0.5)
+            .expect("the sphere is in the middle");
         let bsdf = scene.bsdf(&si);
         let n = 1 << 16;
         let albedo = (0..n)
@@ -102,6 +121,9 @@ fn ggx_shows_its_directional_albedo() {
             })
             .sum::<f64>()
             / n as f64;
-        assert!((centre - albedo).abs() < 0.01, "α = {alpha}: {centre} against {albedo}");
+        assert!(
+            (centre - albedo).abs() < 0.01,
+            "α = {alpha}: {centre} against {albedo}"
+        );
     }
 }

@@ -23,7 +23,11 @@ fn session() -> (RenderSession, Receiver<()>) {
 }
 
 /// The first frame that `wanted` accepts.
-fn wait_for(s: &RenderSession, woken: &Receiver<()>, wanted: impl Fn(&Frame) -> bool) -> Arc<Frame> {
+fn wait_for(
+    s: &RenderSession,
+    woken: &Receiver<()>,
+    wanted: impl Fn(&Frame) -> bool,
+) -> Arc<Frame> {
     let start = Instant::now();
     while start.elapsed() < PATIENCE {
         if let Some(frame) = s.latest().filter(|f| wanted(f)) {
@@ -31,7 +35,10 @@ fn wait_for(s: &RenderSession, woken: &Receiver<()>, wanted: impl Fn(&Frame) -> 
         }
         let _ = woken.recv_timeout(Duration::from_millis(100));
     }
-    panic!("no such frame within {PATIENCE:?}; latest: {:?}", s.latest().map(|f| (f.epoch, f.passes)));
+    panic!(
+        "no such frame within {PATIENCE:?}; latest: {:?}",
+        s.latest().map(|f| (f.epoch, f.passes))
+    );
 }
 
 fn scene() -> Arc<lightscope::engine::scene::Scene> {
@@ -109,5 +116,9 @@ fn a_picture_without_pixels_and_a_closing_session_do_not_hang() {
     std::thread::sleep(Duration::from_millis(200));
     let start = Instant::now();
     drop(s);
-    assert!(start.elapsed() < Duration::from_secs(2), "closing took {:?}", start.elapsed());
+    assert!(
+        start.elapsed() < Duration::from_secs(2),
+        "closing took {:?}",
+        start.elapsed()
+    );
 }

@@ -25,7 +25,11 @@ fn sources() -> Vec<Source> {
     collect(&root, &mut files);
     files.sort();
     let read = |f: PathBuf| Source {
-        path: f.strip_prefix(&root).expect("below src").to_string_lossy().replace('\\', "/"),
+        path: f
+            .strip_prefix(&root)
+            .expect("below src")
+            .to_string_lossy()
+            .replace('\\', "/"),
         text: fs::read_to_string(&f).expect("readable"),
     };
     files.into_iter().map(read).collect()
@@ -33,8 +37,13 @@ fn sources() -> Vec<Source> {
 
 /// Lines of code, comments and the tests at a file's end left out.
 fn code_lines(source: &Source) -> impl Iterator<Item = (usize, &str)> {
-    let code = source.text.lines().take_while(|l| !l.starts_with("#[cfg(test)]"));
-    code.enumerate().map(|(i, l)| (i + 1, l)).filter(|(_, l)| !l.trim_start().starts_with("//"))
+    let code = source
+        .text
+        .lines()
+        .take_while(|l| !l.starts_with("#[cfg(test)]"));
+    code.enumerate()
+        .map(|(i, l)| (i + 1, l))
+        .filter(|(_, l)| !l.trim_start().starts_with("//"))
 }
 
 /// Every place in files that `within` accepts where a line contains one of `words`.
@@ -61,16 +70,31 @@ fn in_engine(path: &str) -> bool {
 #[test]
 fn the_engine_knows_nothing_of_windows() {
     let words = ["wgpu", "egui", "winit", "crate::viewer", "crate::cli"];
-    assert_none("the engine names no window crate", &places(in_engine, &words));
+    assert_none(
+        "the engine names no window crate",
+        &places(in_engine, &words),
+    );
 }
 
 #[test]
 fn obvhs_and_tobj_stay_behind_one_file_each() {
-    for (word, home) in [("obvhs", "engine/geometry/accel.rs"), ("tobj", "engine/io/obj.rs")] {
-        let others = places(|p| p != home, &[&format!("{word}::"), &format!("use {word}")]);
+    for (word, home) in [
+        ("obvhs", "engine/geometry/accel.rs"),
+        ("tobj", "engine/io/obj.rs"),
+    ] {
+        let others = places(
+            |p| p != home,
+            &[&format!("{word}::"), &format!("use {word}")],
+        );
         assert_none(&format!("{word} is named in {home} alone"), &others);
-        let at_home = places(|p| p == home, &[&format!("{word}::"), &format!("use {word}")]);
-        assert!(!at_home.is_empty(), "{home} does not name {word}: this test looks at nothing");
+        let at_home = places(
+            |p| p == home,
+            &[&format!("{word}::"), &format!("use {word}")],
+        );
+        assert!(
+            !at_home.is_empty(),
+            "{home} does not name {word}: this test looks at nothing"
+        );
     }
 }
 
@@ -83,7 +107,13 @@ fn the_engine_prints_nothing() {
 #[test]
 fn files_are_touched_in_io_alone() {
     let within = |p: &str| in_engine(p) && !p.starts_with("engine/io/");
-    let words = ["std::fs", "File::open", "File::create", "fs::read", "fs::write"];
+    let words = [
+        "std::fs",
+        "File::open",
+        "File::create",
+        "fs::read",
+        "fs::write",
+    ];
     assert_none("no file access outside engine/io", &places(within, &words));
 }
 
@@ -93,19 +123,34 @@ fn clocks_are_read_in_session_and_measure_alone() {
         in_engine(p) && !p.starts_with("engine/session/") && !p.starts_with("engine/measure/")
     };
     let words = ["Instant::now", "SystemTime", "ProcessTime"];
-    assert_none("no clock outside session and measure", &places(within, &words));
+    assert_none(
+        "no clock outside session and measure",
+        &places(within, &words),
+    );
 }
 
 #[test]
 fn the_viewer_sees_frames_and_never_films() {
     let within = |p: &str| p.starts_with("viewer/");
-    let words = ["Film::", "film::Film,", "film::Film;", "PassBuffer", "engine::film::accumulator"];
+    let words = [
+        "Film::",
+        "film::Film,",
+        "film::Film;",
+        "PassBuffer",
+        "engine::film::accumulator",
+    ];
     assert_none("the viewer names no Film", &places(within, &words));
 }
 
 #[test]
 fn random_numbers_come_from_the_samplers() {
-    let words = ["rand::", "thread_rng", "from_entropy", "fastrand", "getrandom"];
+    let words = [
+        "rand::",
+        "thread_rng",
+        "from_entropy",
+        "fastrand",
+        "getrandom",
+    ];
     assert_none("no other random numbers", &places(in_engine, &words));
 }
 
@@ -130,7 +175,9 @@ fn modules_use_only_what_stands_left_of_them() {
             let is = |m: &&&str| path == **m || path.starts_with(&format!("{m}/"));
             let found = modules.iter().find(is);
             // `scene/desc` stands apart from the rest of its folder.
-            found.filter(|m| m.contains('/') || !special(path)).map(|_| rank)
+            found
+                .filter(|m| m.contains('/') || !special(path))
+                .map(|_| rank)
         })
     };
     fn special(path: &str) -> bool {
@@ -142,10 +189,14 @@ fn modules_use_only_what_stands_left_of_them() {
         let own = own.trim_end_matches("/mod");
         let Some(own_rank) = rank(own) else { continue };
         for (number, line) in code_lines(source) {
-            let Some((_, rest)) = line.split_once("crate::engine::") else { continue };
+            let Some((_, rest)) = line.split_once("crate::engine::") else {
+                continue;
+            };
             let used = rest.replace("::", "/");
-            let used: String =
-                used.chars().take_while(|c| c.is_alphanumeric() || *c == '_' || *c == '/').collect();
+            let used: String = used
+                .chars()
+                .take_while(|c| c.is_alphanumeric() || *c == '_' || *c == '/')
+                .collect();
             let used_rank = ["scene/desc", "scene/texture"]
                 .iter()
                 .find(|s| used.starts_with(**s))

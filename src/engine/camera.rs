@@ -109,7 +109,11 @@ impl Camera {
         let size = size.max(UVec2::ONE);
         let aspect = f64::from(size.x) / f64::from(size.y);
         Self {
-            desc: CameraDesc { width: size.x, height: size.y, ..self.desc },
+            desc: CameraDesc {
+                width: size.x,
+                height: size.y,
+                ..self.desc
+            },
             half: Vec2::new((f64::from(self.half.y) * aspect) as f32, self.half.y),
             size: size.as_vec2(),
             ..self.clone()

@@ -61,7 +61,11 @@ impl RenderPlan {
     ///
     /// # Errors
     /// If the expressions together need too large a table.
-    pub fn new(scene: &Scene, lens: bool, settings: &LayerSettings) -> Result<Self, ExpressionError> {
+    pub fn new(
+        scene: &Scene,
+        lens: bool,
+        settings: &LayerSettings,
+    ) -> Result<Self, ExpressionError> {
         let features = scene.features;
         let classes = PathClasses::with_components(&settings.expressions)?;
         let labels = classes.labels().to_vec();
@@ -127,15 +131,24 @@ impl RenderPlan {
     fn reasons(&self, lit: bool, possible: u32) -> Vec<LeftOut> {
         let mut list = Vec::new();
         let mut leave = |what: &str, why: &str| {
-            list.push(LeftOut { what: what.to_owned(), why: why.to_owned() });
+            list.push(LeftOut {
+                what: what.to_owned(),
+                why: why.to_owned(),
+            });
         };
         if !lit {
-            leave("shadow rays and all layers", "nothing in the scene emits light");
+            leave(
+                "shadow rays and all layers",
+                "nothing in the scene emits light",
+            );
         }
         for (i, label) in self.labels.iter().enumerate() {
             let bit = 1 << i;
             if self.asked & bit != 0 && possible & bit == 0 && lit {
-                leave(&format!("layer {label}"), "no path of this scene has such a word");
+                leave(
+                    &format!("layer {label}"),
+                    "no path of this scene has such a word",
+                );
             }
         }
         let f = &self.features;
@@ -170,6 +183,14 @@ fn asked_mask(settings: &LayerSettings) -> u32 {
 
 /// The letters that can occur in this scene.
 fn letters_of(features: &SceneFeatures) -> Vec<Letter> {
-    let present = [(features.diffuse, Letter::D), (features.glossy, Letter::G), (features.specular, Letter::S)];
-    present.into_iter().filter(|(on, _)| *on).map(|(_, letter)| letter).collect()
+    let present = [
+        (features.diffuse, Letter::D),
+        (features.glossy, Letter::G),
+        (features.specular, Letter::S),
+    ];
+    present
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, letter)| letter)
+        .collect()
 }

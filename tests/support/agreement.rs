@@ -56,7 +56,12 @@ impl Blocks {
             }
         }
         let weight = means[0].iter().map(|b| b.1).collect();
-        Self { mean, variance, freedom: n - 1.0, weight }
+        Self {
+            mean,
+            variance,
+            freedom: n - 1.0,
+            weight,
+        }
     }
 
     /// From a reference image and the standard error of each of its pixels, which are independent
@@ -65,8 +70,16 @@ impl Blocks {
         let squares: Vec<[f32; 3]> = se.iter().map(|p| p.map(|x| x * x)).collect();
         let (mean, weight) = block_means(pixels, width).into_iter().unzip();
         let variance = block_means(&squares, width);
-        let variance = variance.into_iter().map(|(v, n)| v.map(|x| x / n)).collect();
-        Self { mean, variance, freedom: 1e6, weight }
+        let variance = variance
+            .into_iter()
+            .map(|(v, n)| v.map(|x| x / n))
+            .collect();
+        Self {
+            mean,
+            variance,
+            freedom: 1e6,
+            weight,
+        }
     }
 
     /// The exact value `value` everywhere.
@@ -110,7 +123,9 @@ pub fn compare(label: &str, a: &Blocks, b: &Blocks, whole: f64, family: usize) -
     let se = (var_a + var_b).sqrt();
     let difference = (mean_a - mean_b).abs();
     if difference > (0.01 * whole).max(4.0 * se) {
-        complaints.push(format!("{label}: image mean {mean_a} against {mean_b}, error {se}"));
+        complaints.push(format!(
+            "{label}: image mean {mean_a} against {mean_b}, error {se}"
+        ));
     }
     let tests = (a.mean.len() * 3 * family) as f64;
     // Šidák: each test at the rate 1 − (1 − α)^(1/n).
@@ -139,7 +154,11 @@ pub fn compare(label: &str, a: &Blocks, b: &Blocks, whole: f64, family: usize) -
             }
         }
     }
-    Verdict { complaints, sensitivity: (0.01 * whole).max(4.0 * se) / whole, worst }
+    Verdict {
+        complaints,
+        sensitivity: (0.01 * whole).max(4.0 * se) / whole,
+        worst,
+    }
 }
 
 /// Mean of all pixels and channels.
@@ -154,7 +173,9 @@ mod tests {
     fn noisy_runs(bias: f32) -> Vec<Vec<[f32; 3]>> {
         use lightscope::engine::math::hash::{combine, unit_f32};
         let value = |run: u64, i: u64| 1.0 + bias + 0.2 * (unit_f32(combine(run, i)) - 0.5);
-        (0..16).map(|r| (0..4096).map(|i| [value(r, i); 3]).collect()).collect()
+        (0..16)
+            .map(|r| (0..4096).map(|i| [value(r, i); 3]).collect())
+            .collect()
     }
 
     #[test]
@@ -164,7 +185,12 @@ mod tests {
             let runs = noisy_runs(bias);
             let runs: Vec<&[[f32; 3]]> = runs.iter().map(Vec::as_slice).collect();
             let verdict = compare("whole", &Blocks::from_runs(&runs, 64), &exact, 1.0, 1);
-            assert_eq!(verdict.complaints.is_empty(), agrees, "{:?}", verdict.complaints);
+            assert_eq!(
+                verdict.complaints.is_empty(),
+                agrees,
+                "{:?}",
+                verdict.complaints
+            );
         }
     }
 }

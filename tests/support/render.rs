@@ -13,7 +13,9 @@ use lightscope::engine::session::{RenderJob, Renderer, Settings};
 
 /// Folder of a reference scene.
 pub fn reference_dir(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/reference")
+        .join(name)
 }
 
 /// A scene file, prepared.
@@ -33,7 +35,10 @@ pub fn job(scene: &Arc<Scene>, integrator: &str, set: &[(&str, &str)]) -> Render
     let entry = integrators::find(integrator).expect("an integrator of the registry");
     let mut settings = Settings::new(entry);
     for (name, value) in set {
-        settings.params.set(entry.params, name, value).expect("a parameter of the integrator");
+        settings
+            .params
+            .set(entry.params, name, value)
+            .expect("a parameter of the integrator");
     }
     let camera = scene.camera;
     RenderJob {
@@ -49,13 +54,18 @@ pub fn job(scene: &Arc<Scene>, integrator: &str, set: &[(&str, &str)]) -> Render
 pub fn render(job: &RenderJob, passes: u64) -> Frame {
     let mut renderer = Renderer::new(job).expect("classes fit their table");
     for _ in 0..passes {
-        renderer.render_pass(&Cancel::never()).expect("nobody cancels");
+        renderer
+            .render_pass(&Cancel::never())
+            .expect("nobody cancels");
     }
     renderer.frame()
 }
 
 /// The picture after `passes` passes on a pool of `threads` threads.
 pub fn render_with_threads(job: &RenderJob, passes: u64, threads: usize) -> Frame {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads");
     pool.install(|| render(job, passes))
 }

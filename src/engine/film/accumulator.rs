@@ -33,7 +33,11 @@ struct FilmTile {
 impl FilmTile {
     fn new(planes: usize) -> Self {
         let zero: Plane = Box::new([[0.0; 3]; TILE_PIXELS]);
-        Self { sums: vec![zero.clone(); planes], even: zero, rejected: None }
+        Self {
+            sums: vec![zero.clone(); planes],
+            even: zero,
+            rejected: None,
+        }
     }
 
     fn add(&mut self, pass: &PassTile, even: bool) {
@@ -45,7 +49,9 @@ impl FilmTile {
         }
         let mut mask = pass.rejected;
         while mask != 0 {
-            let rejected = self.rejected.get_or_insert_with(|| Box::new([[0; 2]; TILE_PIXELS]));
+            let rejected = self
+                .rejected
+                .get_or_insert_with(|| Box::new([[0; 2]; TILE_PIXELS]));
             rejected[mask.trailing_zeros() as usize][usize::from(!even)] += 1;
             mask &= mask - 1;
         }
@@ -54,7 +60,10 @@ impl FilmTile {
     /// Finite samples of the pixel at `place` among `passes` passes, of the even and odd ones.
     fn counts(&self, place: usize, passes: u64) -> [u64; 2] {
         let rejected = self.rejected.as_ref().map_or([0; 2], |r| r[place]);
-        [passes.div_ceil(2) - u64::from(rejected[0]), passes / 2 - u64::from(rejected[1])]
+        [
+            passes.div_ceil(2) - u64::from(rejected[0]),
+            passes / 2 - u64::from(rejected[1]),
+        ]
     }
 }
 
@@ -71,7 +80,12 @@ impl Film {
     pub fn new(size: UVec2, planned: u32) -> Self {
         let tiles = Tiles::new(size);
         let planes = 1 + planned.count_ones() as usize;
-        Self { tiles, planned, data: vec![FilmTile::new(planes); tiles.len()], passes: 0 }
+        Self {
+            tiles,
+            planned,
+            data: vec![FilmTile::new(planes); tiles.len()],
+            passes: 0,
+        }
     }
 
     /// Size in pixels.
@@ -94,7 +108,10 @@ impl Film {
     pub fn commit(&mut self, pass: &PassBuffer) {
         debug_assert!(pass.tiles() == self.tiles && pass.planned() == self.planned);
         let even = self.passes.is_multiple_of(2);
-        self.data.par_iter_mut().zip(pass.data()).for_each(|(film, pass)| film.add(pass, even));
+        self.data
+            .par_iter_mut()
+            .zip(pass.data())
+            .for_each(|(film, pass)| film.add(pass, even));
         self.passes += 1;
     }
 
@@ -109,19 +126,21 @@ impl Film {
         }
         let rows = size.x as usize * super::tiles::TILE as usize;
         let columns = size.x.div_ceil(super::tiles::TILE) as usize;
-        out.par_chunks_mut(rows).enumerate().for_each(|(tile_row, rows)| {
-            let top = tile_row as u32 * super::tiles::TILE;
-            for t in tile_row * columns..(tile_row + 1) * columns {
-                let tile = &self.data[t];
-                for (place, pixel) in self.tiles.pixels(t) {
-                    let [even, odd] = tile.counts(place, self.passes);
-                    let scale = 1.0 / (even + odd) as f64;
-                    let sum = tile.sums[plane][place];
-                    rows[((pixel.y - top) * size.x + pixel.x) as usize] =
-                        sum.map(|s| (s * scale) as f32);
+        out.par_chunks_mut(rows)
+            .enumerate()
+            .for_each(|(tile_row, rows)| {
+                let top = tile_row as u32 * super::tiles::TILE;
+                for t in tile_row * columns..(tile_row + 1) * columns {
+                    let tile = &self.data[t];
+                    for (place, pixel) in self.tiles.pixels(t) {
+                        let [even, odd] = tile.counts(place, self.passes);
+                        let scale = 1.0 / (even + odd) as f64;
+                        let sum = tile.sums[plane][place];
+                        rows[((pixel.y - top) * size.x + pixel.x) as usize] =
+                            sum.map(|s| (s * scale) as f32);
+                    }
                 }
-            }
-        });
+            });
     }
 
     /// Means of the whole and of layer after layer; layers without a plane are zero.

@@ -67,7 +67,10 @@ impl Frame {
 
     /// A frame without pixels that says what went wrong.
     pub fn failed(error: String) -> Self {
-        Self { error: Some(error), ..Self::empty(Arc::new(RenderPlan::nothing())) }
+        Self {
+            error: Some(error),
+            ..Self::empty(Arc::new(RenderPlan::nothing()))
+        }
     }
 
     /// True while a lower resolution stands in for the picture.

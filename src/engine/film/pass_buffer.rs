@@ -29,8 +29,15 @@ impl PassBuffer {
     pub fn new(size: UVec2, planned: u32) -> Self {
         let tiles = Tiles::new(size);
         let planes = 1 + planned.count_ones() as usize;
-        let tile = PassTile { planes: vec![[[0.0; 3]; TILE_PIXELS]; planes], rejected: 0 };
-        Self { tiles, planned, data: vec![tile; tiles.len()] }
+        let tile = PassTile {
+            planes: vec![[[0.0; 3]; TILE_PIXELS]; planes],
+            rejected: 0,
+        };
+        Self {
+            tiles,
+            planned,
+            data: vec![tile; tiles.len()],
+        }
     }
 
     /// How the picture is cut.

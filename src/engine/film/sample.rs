@@ -20,7 +20,12 @@ pub struct SampleRadiance<'a> {
 impl<'a> SampleRadiance<'a> {
     /// An empty sink for the layers of the bit mask `planned`.
     pub fn new(classes: &'a PathClasses, planned: u32) -> Self {
-        Self { classes, planned, whole: Rgb::BLACK, layers: [Rgb::BLACK; MAX_LAYERS] }
+        Self {
+            classes,
+            planned,
+            whole: Rgb::BLACK,
+            layers: [Rgb::BLACK; MAX_LAYERS],
+        }
     }
 
     /// Forgets the last sample.

@@ -17,7 +17,10 @@ pub struct Tiles {
 impl Tiles {
     /// Tiles of a picture of `size` pixels.
     pub fn new(size: UVec2) -> Self {
-        Self { size, columns: size.x.div_ceil(TILE) }
+        Self {
+            size,
+            columns: size.x.div_ceil(TILE),
+        }
     }
 
     /// Size of the picture in pixels.
@@ -49,7 +52,10 @@ impl Tiles {
     pub fn locate(&self, pixel: UVec2) -> (usize, usize) {
         let tile = pixel / TILE;
         let within = pixel % TILE;
-        ((tile.y * self.columns + tile.x) as usize, (within.y * TILE + within.x) as usize)
+        (
+            (tile.y * self.columns + tile.x) as usize,
+            (within.y * TILE + within.x) as usize,
+        )
     }
 }
 

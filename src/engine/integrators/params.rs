@@ -62,9 +62,10 @@ impl ParamSpec {
     /// A sentence with the values that would be right.
     pub fn parse(&self, text: &str) -> Result<ParamValue, String> {
         let value = match self.kind {
-            ParamKind::Choice(words) => {
-                words.iter().find(|w| **w == text).map(|w| ParamValue::Choice(w))
-            }
+            ParamKind::Choice(words) => words
+                .iter()
+                .find(|w| **w == text)
+                .map(|w| ParamValue::Choice(w)),
             ParamKind::Switch => match text {
                 "on" => Some(ParamValue::Switch(true)),
                 "off" => Some(ParamValue::Switch(false)),
@@ -80,13 +81,21 @@ impl ParamSpec {
             }
         };
         value.ok_or_else(|| {
-            format!("parameter {} cannot be \"{text}\"; it is {}", self.name, self.range())
+            format!(
+                "parameter {} cannot be \"{text}\"; it is {}",
+                self.name,
+                self.range()
+            )
         })
     }
 
     /// The values allowed, in words.
     pub fn range(&self) -> String {
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let unit = if self.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", self.unit)
+        };
         match self.kind {
             ParamKind::Choice(words) => format!("one of {}", words.join(", ")),
             ParamKind::Switch => "on or off".to_owned(),
@@ -114,7 +123,10 @@ impl Params {
     pub fn set(&mut self, specs: &[ParamSpec], name: &str, text: &str) -> Result<(), String> {
         let Some(spec) = specs.iter().find(|s| s.name == name) else {
             let names: Vec<&str> = specs.iter().map(|s| s.name).collect();
-            return Err(format!("there is no parameter \"{name}\"; there are {}", names.join(", ")));
+            return Err(format!(
+                "there is no parameter \"{name}\"; there are {}",
+                names.join(", ")
+            ));
         };
         self.0.insert(spec.name, spec.parse(text)?);
         Ok(())
@@ -164,7 +176,12 @@ mod tests {
     fn every_default_of_the_registry_is_in_its_range() {
         for entry in REGISTRY {
             for spec in entry.params {
-                assert!(spec.parse(spec.default).is_ok(), "{} {}", entry.id, spec.name);
+                assert!(
+                    spec.parse(spec.default).is_ok(),
+                    "{} {}",
+                    entry.id,
+                    spec.name
+                );
             }
         }
     }
@@ -181,8 +198,15 @@ mod tests {
         let mut p = Params::defaults(&[spec]);
         assert_eq!(p.integer("n"), 3);
         let error = p.set(&[spec], "n", "10").unwrap_err();
-        assert_eq!(error, "parameter n cannot be \"10\"; it is an integer from 1 to 9");
-        assert!(p.set(&[spec], "m", "1").unwrap_err().contains("there are n"));
+        assert_eq!(
+            error,
+            "parameter n cannot be \"10\"; it is an integer from 1 to 9"
+        );
+        assert!(
+            p.set(&[spec], "m", "1")
+                .unwrap_err()
+                .contains("there are n")
+        );
         assert_eq!(p.integer("n"), 3);
     }
 }

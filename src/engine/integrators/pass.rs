@@ -36,7 +36,11 @@ impl Cancel {
     /// [`Cancelled`] then.
     #[inline]
     pub fn check(&self) -> Result<(), Cancelled> {
-        if self.newest.load(Ordering::Relaxed) == self.epoch { Ok(()) } else { Err(Cancelled) }
+        if self.newest.load(Ordering::Relaxed) == self.epoch {
+            Ok(())
+        } else {
+            Err(Cancelled)
+        }
     }
 }
 

@@ -44,7 +44,11 @@ pub struct Tiled<T> {
 impl<T: RayIntegrator> Tiled<T> {
     /// Runs `estimator` with numbers of that kind.
     pub fn new(estimator: T, sampler: SamplerKind) -> Self {
-        Self { estimator, sampler, buffer: None }
+        Self {
+            estimator,
+            sampler,
+            buffer: None,
+        }
     }
 
     /// Computes the sample of one pixel in one pass again, alone.
@@ -81,7 +85,11 @@ impl<T: RayIntegrator> Tiled<T> {
         stats: &mut RenderStats,
     ) {
         let film = pixel.as_vec2() + sampler.next_2d();
-        let lens = if cx.plan.lens { sampler.next_2d() } else { Vec2::ZERO };
+        let lens = if cx.plan.lens {
+            sampler.next_2d()
+        } else {
+            Vec2::ZERO
+        };
         sampler.seek(CAMERA_DIMENSIONS);
         let ray = cx.camera.generate_ray(film, lens);
         out.clear();
@@ -99,7 +107,10 @@ impl<T: RayIntegrator> Tiled<T> {
             self.sample(cx, pixel, &mut out, &mut stats);
             if !tile.put(place, planned, &out) {
                 stats.non_finite += 1;
-                let bad = BadSample { pixel, pass: cx.index };
+                let bad = BadSample {
+                    pixel,
+                    pass: cx.index,
+                };
                 stats.first_non_finite = stats.first_non_finite.or(Some(bad));
             }
         }
@@ -109,9 +120,8 @@ impl<T: RayIntegrator> Tiled<T> {
 
 impl<T: RayIntegrator> Integrator for Tiled<T> {
     fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
-        let fits = |b: &PassBuffer| {
-            b.tiles().size() == film.size() && b.planned() == cx.plan.planned
-        };
+        let fits =
+            |b: &PassBuffer| b.tiles().size() == film.size() && b.planned() == cx.plan.planned;
         let mut buffer = match self.buffer.take().filter(fits) {
             Some(buffer) => buffer,
             None => PassBuffer::new(film.size(), cx.plan.planned),
@@ -125,9 +135,11 @@ impl<T: RayIntegrator> Integrator for Tiled<T> {
         }
         self.buffer = Some(buffer);
         // Summed in the order of the tiles: the first bad sample is the same for any thread count.
-        Ok(stats?.into_iter().fold(RenderStats::default(), |mut sum, s| {
-            sum += s;
-            sum
-        }))
+        Ok(stats?
+            .into_iter()
+            .fold(RenderStats::default(), |mut sum, s| {
+                sum += s;
+                sum
+            }))
     }
 }

@@ -16,12 +16,17 @@ impl Scene {
     /// A sentence that says which part cannot be used and what would be right.
     pub fn build(desc: &SceneDesc) -> Result<Self, String> {
         let count = desc.materials.len();
-        let materials: Vec<Material> =
-            (0..count).map(|i| Material::build(i, &desc.materials)).collect::<Result<_, _>>()?;
+        let materials: Vec<Material> = (0..count)
+            .map(|i| Material::build(i, &desc.materials))
+            .collect::<Result<_, _>>()?;
 
         let world: Vec<WorldMesh> = desc.meshes.iter().map(WorldMesh::new).collect();
-        let meshes: Vec<MeshInput<'_>> =
-            desc.meshes.iter().zip(&world).map(|(d, w)| w.input(d)).collect();
+        let meshes: Vec<MeshInput<'_>> = desc
+            .meshes
+            .iter()
+            .zip(&world)
+            .map(|(d, w)| w.input(d))
+            .collect();
         let spheres: Vec<SphereInput> = desc.spheres.iter().map(sphere_input).collect();
         let (mut geometry, dropped) = Geometry::build(&meshes, &spheres);
 
@@ -59,10 +64,22 @@ struct WorldMesh {
 impl WorldMesh {
     fn new(desc: &MeshDesc) -> Self {
         let Some(transform) = desc.transform else {
-            return Self { positions: None, normals: None, triangles: None };
+            return Self {
+                positions: None,
+                normals: None,
+                triangles: None,
+            };
         };
-        let positions = desc.positions.iter().map(|p| transform.transform_point3(*p)).collect();
-        let normals = desc.normals.iter().map(|n| transform_normal(&transform, *n)).collect();
+        let positions = desc
+            .positions
+            .iter()
+            .map(|p| transform.transform_point3(*p))
+            .collect();
+        let normals = desc
+            .normals
+            .iter()
+            .map(|n| transform_normal(&transform, *n))
+            .collect();
         // A reflection turns the order of the vertices; the front stays the front.
         let mirrored = transform.matrix3.determinant() < 0.0;
         let turned = || desc.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
@@ -107,9 +124,14 @@ fn sphere_input(desc: &SphereDesc) -> SphereInput {
 fn emitters(desc: &SceneDesc, geometry: &Geometry) -> Result<Vec<Emitter>, String> {
     let mut emitters = Vec::new();
     for (index, mesh) in desc.meshes.iter().enumerate() {
-        let Some(emission) = &mesh.emission else { continue };
+        let Some(emission) = &mesh.emission else {
+            continue;
+        };
         let ColorDesc::Constant(radiance) = *emission else {
-            return Err(format!("mesh \"{}\": emission is one colour, not a texture", mesh.name));
+            return Err(format!(
+                "mesh \"{}\": emission is one colour, not a texture",
+                mesh.name
+            ));
         };
         let prims = geometry.mesh_triangles(index);
         emitters.extend(prims.map(|prim| Emitter { prim, radiance }));
@@ -125,14 +147,29 @@ fn emitters(desc: &SceneDesc, geometry: &Geometry) -> Result<Vec<Emitter>, Strin
 
 fn describe_dropped(dropped: &DropReport) -> Option<String> {
     let reasons = [
-        (dropped.bad_index, "triangles that name a vertex that is not there"),
-        (dropped.non_finite, "triangles with coordinates that are no numbers"),
-        (dropped.out_of_range, "triangles with coordinates beyond 1e18"),
+        (
+            dropped.bad_index,
+            "triangles that name a vertex that is not there",
+        ),
+        (
+            dropped.non_finite,
+            "triangles with coordinates that are no numbers",
+        ),
+        (
+            dropped.out_of_range,
+            "triangles with coordinates beyond 1e18",
+        ),
         (dropped.zero_area, "triangles without area"),
-        (dropped.invalid_sphere, "spheres whose centre or radius cannot be used"),
+        (
+            dropped.invalid_sphere,
+            "spheres whose centre or radius cannot be used",
+        ),
     ];
-    let list: Vec<String> =
-        reasons.iter().filter(|r| r.0 > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    let list: Vec<String> = reasons
+        .iter()
+        .filter(|r| r.0 > 0)
+        .map(|(n, what)| format!("{n} {what}"))
+        .collect();
     (!list.is_empty()).then(|| format!("left out: {}", list.join(", ")))
 }
 

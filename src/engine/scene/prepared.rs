@@ -36,11 +36,7 @@ impl Scene {
     /// The first surface along `ray` that stops it. Where surfaces have an opacity, it decides by
     /// `number` (called at most once) whether the ray meets them; crossing one is no event.
     #[inline]
-    pub fn intersect(
-        &self,
-        ray: &Ray,
-        number: impl FnOnce() -> f32,
-    ) -> Option<SurfaceInteraction> {
+    pub fn intersect(&self, ray: &Ray, number: impl FnOnce() -> f32) -> Option<SurfaceInteraction> {
         let hit = self.geometry.intersect(ray)?;
         let si = self.geometry.interaction(ray, &hit);
         if !self.features.opacity {
@@ -51,7 +47,12 @@ impl Scene {
 
     /// Goes through surfaces while the random number `u` says so; what is left of it after one
     /// decision is uniform again and serves the next.
-    fn cross(&self, ray: Ray, mut si: SurfaceInteraction, mut u: f32) -> Option<SurfaceInteraction> {
+    fn cross(
+        &self,
+        ray: Ray,
+        mut si: SurfaceInteraction,
+        mut u: f32,
+    ) -> Option<SurfaceInteraction> {
         for _ in 0..MAX_CROSSINGS {
             let opacity = self.materials[si.material as usize].opacity(&si);
             if u < opacity {
@@ -83,7 +84,9 @@ impl Scene {
     fn transmittance_along(&self, mut ray: Ray) -> f32 {
         let mut transmittance = 1.0;
         for _ in 0..MAX_CROSSINGS {
-            let Some(hit) = self.geometry.intersect(&ray) else { return transmittance };
+            let Some(hit) = self.geometry.intersect(&ray) else {
+                return transmittance;
+            };
             let si = self.geometry.interaction(&ray, &hit);
             transmittance *= 1.0 - self.materials[si.material as usize].opacity(&si);
             if transmittance == 0.0 {

@@ -16,7 +16,11 @@ pub struct RenderClock {
 impl RenderClock {
     /// Starts now.
     pub fn start() -> Self {
-        Self { wall: Duration::ZERO, cpu: Duration::ZERO, running: Some(now()) }
+        Self {
+            wall: Duration::ZERO,
+            cpu: Duration::ZERO,
+            running: Some(now()),
+        }
     }
 
     /// Stands still until [`Self::resume`].

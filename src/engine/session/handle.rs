@@ -53,9 +53,16 @@ impl Shared {
                 return Mail::Job(epoch, job);
             }
             if !wait {
-                return if mailbox.paused { Mail::Paused } else { Mail::Nothing };
+                return if mailbox.paused {
+                    Mail::Paused
+                } else {
+                    Mail::Nothing
+                };
             }
-            mailbox = self.changed.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
+            mailbox = self
+                .changed
+                .wait(mailbox)
+                .unwrap_or_else(PoisonError::into_inner);
             if !mailbox.paused && mailbox.job.is_none() && !mailbox.closing {
                 return Mail::Nothing;
             }
@@ -101,7 +108,11 @@ impl RenderSession {
         let worker = std::thread::Builder::new()
             .name("render".to_owned())
             .spawn(move || worker::run(&for_worker, &pool))?;
-        Ok(Self { shared, worker: Some(worker), epoch: 0 })
+        Ok(Self {
+            shared,
+            worker: Some(worker),
+            epoch: 0,
+        })
     }
 
     /// Replaces the current job and cancels its pass. Returns the epoch that the job's frames
@@ -116,7 +127,11 @@ impl RenderSession {
 
     /// The newest frame, of the newest job or, until that has one, of the one before.
     pub fn latest(&self) -> Option<Arc<Frame>> {
-        self.shared.latest.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.shared
+            .latest
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
     }
 
     /// Stops after the pass under way, keeping all samples; or goes on.

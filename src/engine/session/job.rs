@@ -28,7 +28,10 @@ impl Settings {
         Self {
             integrator,
             params: Params::defaults(integrator.params),
-            layers: LayerSettings { components: true, ..LayerSettings::default() },
+            layers: LayerSettings {
+                components: true,
+                ..LayerSettings::default()
+            },
             seed: 0,
         }
     }

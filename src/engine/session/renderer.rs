@@ -157,7 +157,11 @@ impl Renderer {
         frame.t_wall = self.clock.wall();
         frame.t_cpu = self.clock.cpu();
         frame.stats = self.stats;
-        frame.relative_error = if coarse.is_none() { film.relative_error() } else { None };
+        frame.relative_error = if coarse.is_none() {
+            film.relative_error()
+        } else {
+            None
+        };
         frame.plan = Arc::clone(&self.plan);
         frame.paused = false;
         frame.error = None;

@@ -54,18 +54,27 @@ pub fn next_step(p: &Progress) -> Step {
             if divisor == 1 && !p.navigating {
                 Step::Full
             } else {
-                Step::Coarse { divisor, must_finish: true }
+                Step::Coarse {
+                    divisor,
+                    must_finish: true,
+                }
             }
         }
         Some(d) if d <= 2 || full_pass <= PATIENCE_SECONDS => Step::Full,
-        Some(d) => Step::Coarse { divisor: d / 2, must_finish: false },
+        Some(d) => Step::Coarse {
+            divisor: d / 2,
+            must_finish: false,
+        },
     }
 }
 
 /// The smallest power of two whose pass fits the time of a first frame.
 fn first_divisor(full_pass: f64) -> u32 {
     let fits = |d: u32| full_pass / f64::from(d * d) <= PLANNED_SHARE * FIRST_FRAME_SECONDS;
-    (0..).map(|e| 1 << e).find(|&d| d >= MAX_DIVISOR || fits(d)).unwrap_or(MAX_DIVISOR)
+    (0..)
+        .map(|e| 1 << e)
+        .find(|&d| d >= MAX_DIVISOR || fits(d))
+        .unwrap_or(MAX_DIVISOR)
 }
 
 /// Whether a frame is due after pass number `passes`, `since` seconds after the last frame.
@@ -91,7 +100,13 @@ mod tests {
     fn first_frames_fit_their_time_at_any_speed() {
         for e in -90..=-60 {
             let p = progress(10f64.powf(f64::from(e) / 10.0));
-            let Step::Coarse { divisor, must_finish } = next_step(&p) else { panic!("{p:?}") };
+            let Step::Coarse {
+                divisor,
+                must_finish,
+            } = next_step(&p)
+            else {
+                panic!("{p:?}")
+            };
             assert!(must_finish);
             let cells = p.pixels as f64 / f64::from(divisor * divisor);
             let seconds = cells * p.seconds_per_pixel;
@@ -114,7 +129,11 @@ mod tests {
 
     #[test]
     fn a_still_view_that_is_quick_needs_no_coarse_frame() {
-        let p = Progress { navigating: false, pixels: 64 * 64, ..progress(2e-6) };
+        let p = Progress {
+            navigating: false,
+            pixels: 64 * 64,
+            ..progress(2e-6)
+        };
         assert_eq!(next_step(&p), Step::Full);
     }
 

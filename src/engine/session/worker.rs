@@ -97,7 +97,9 @@ impl Worker<'_> {
 
     /// Does one step of the job; false if there is nothing to do until the mailbox changes.
     fn step(&mut self) -> bool {
-        let Some(current) = &mut self.current else { return false };
+        let Some(current) = &mut self.current else {
+            return false;
+        };
         let size = current.renderer.size();
         let pixels = u64::from(size.x) * u64::from(size.y);
         if pixels == 0 {
@@ -111,7 +113,9 @@ impl Worker<'_> {
             navigating: current.navigating,
         });
         let cancel = match step {
-            Step::Coarse { must_finish: true, .. } => Cancel::never(),
+            Step::Coarse {
+                must_finish: true, ..
+            } => Cancel::never(),
             _ => Cancel::new(Arc::clone(&self.shared.newest), current.epoch),
         };
         let start = Instant::now();
@@ -138,7 +142,9 @@ impl Worker<'_> {
     }
 
     fn completed(&mut self, step: Step, coarse: Option<&Film>, start: Instant, pixels: u64) {
-        let Some(current) = &mut self.current else { return };
+        let Some(current) = &mut self.current else {
+            return;
+        };
         let divisor = match step {
             Step::Coarse { divisor, .. } => {
                 current.last_divisor = Some(divisor);
@@ -157,7 +163,9 @@ impl Worker<'_> {
 
     /// Publishes a coarse picture, or the sums if they changed since the last time.
     fn publish(&mut self, coarse: Option<&Film>, paused: bool) {
-        let Some(current) = &mut self.current else { return };
+        let Some(current) = &mut self.current else {
+            return;
+        };
         if !current.unpublished && !paused || coarse.is_none() && current.renderer.passes() == 0 {
             return;
         }
@@ -166,7 +174,8 @@ impl Worker<'_> {
         let mut frame = self.frames.take(current.renderer.plan());
         if let Some(frame) = Arc::get_mut(&mut frame) {
             let (renderer, epoch) = (&current.renderer, current.epoch);
-            self.pool.install(|| renderer.snapshot(coarse, epoch, frame));
+            self.pool
+                .install(|| renderer.snapshot(coarse, epoch, frame));
             frame.paused = paused;
         }
         self.frames.published(Arc::clone(&frame));

@@ -12,7 +12,10 @@ use crate::engine::sampling::{Sampler, mis};
 impl PathTracer {
     /// Next event estimation at `si`: in mode `mis` toward one light chosen at random, in mode
     /// `kajiya` toward every light.
-    #[expect(clippy::too_many_arguments, reason = "the state of one walk; a struct would be made and taken apart once a vertex")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the state of one walk; a struct would be made and taken apart once a vertex"
+    )]
     pub(super) fn add_direct<S: Sampler>(
         &self,
         cx: &Pass<'_>,
@@ -26,7 +29,9 @@ impl PathTracer {
         let lights = &cx.scene.lights;
         let u = sampler.next_2d();
         if self.mode == Mode::Mis {
-            let Some((id, pmf)) = lights.sample(sampler.next_1d()) else { return };
+            let Some((id, pmf)) = lights.sample(sampler.next_1d()) else {
+                return;
+            };
             if let Some(sample) = lights.get(id).sample_li(si.p, u) {
                 self.add_light_sample(cx, walk, si, bsdf, &sample, pmf, out, stats);
             }

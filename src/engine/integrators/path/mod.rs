@@ -89,5 +89,8 @@ fn missing(features: &SceneFeatures, params: &Params) -> Option<Missing> {
     }
     let why = "light of a point, spot or directional source that first meets a mirror or glass \
                arrives by no shadow ray and by no chance hit";
-    features.specular.then_some(Missing { words: "LS.*E", why })
+    features.specular.then_some(Missing {
+        words: "LS.*E",
+        why,
+    })
 }

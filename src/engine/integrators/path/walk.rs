@@ -113,8 +113,11 @@ impl RayIntegrator for PathTracer {
             } else if walk.throughput.is_black() {
                 return;
             }
-            walk.last =
-                Some(Scattered { p: si.p, event: sample.event, pdf_dir: sample.pdf_dir });
+            walk.last = Some(Scattered {
+                p: si.p,
+                event: sample.event,
+                pdf_dir: sample.pdf_dir,
+            });
             ray = si.spawn_ray(sample.wi);
         }
     }

@@ -1,0 +1,313 @@
+//! OBJ meshes, read by tobj. The only file that names it.
+//!
+//! tobj keeps no line numbers: after an error our own scan finds the line. Polygons are split by
+//! our own triangulation, which gets concave ones right.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::path::Path;
+
+use glam::{Vec3, Vec3A};
+use tobj::{LoadError, LoadOptions};
+
+use super::error::InputError;
+use super::materials::Colors;
+use super::mtl::{self, MtlMaterial};
+use super::source::{FileSource, beside, reason};
+use super::triangulate::triangulate;
+use crate::engine::math::Rgb;
+use crate::engine::scene::desc::{CameraDesc, LightDesc, MeshDesc, NamedMaterial, SceneDesc};
+
+/// What an OBJ file holds.
+#[derive(Clone, Debug, Default)]
+pub struct ObjFile {
+    /// One mesh a group and material.
+    pub meshes: Vec<MeshDesc>,
+    /// Its materials; mesh indices refer to them.
+    pub materials: Vec<NamedMaterial>,
+    /// What was assumed.
+    pub warnings: Vec<String>,
+}
+
+/// Reads an OBJ file and the MTL files it names.
+///
+/// # Errors
+/// A sentence with the line where it is known.
+pub fn read(
+    files: &dyn FileSource,
+    path: &str,
+    colors: &mut Colors<'_>,
+) -> Result<ObjFile, InputError> {
+    let bytes = files
+        .read(path)
+        .map_err(|e| InputError::in_file(path, reason(&e)))?;
+    let options = LoadOptions {
+        single_index: true,
+        ignore_points: true,
+        ignore_lines: true,
+        ..LoadOptions::default()
+    };
+    let missing = RefCell::new(Vec::new());
+    let loaded = tobj::load_obj_buf(&mut &bytes[..], &options, |name| {
+        load_mtl(files, path, name, &missing)
+    });
+    let (models, materials) = loaded.map_err(|e| locate(path, &bytes, &e))?;
+    let mut file = ObjFile {
+        warnings: missing.into_inner(),
+        ..ObjFile::default()
+    };
+    let materials = materials.unwrap_or_default();
+    let (indices, emissions) = add_materials(&materials, path, colors, &mut file)?;
+    for model in models {
+        let id = model.mesh.material_id.filter(|id| *id < indices.len());
+        let mut mesh = convert(model.name, &model.mesh);
+        if mesh.triangles.is_empty() {
+            continue;
+        }
+        mesh.material = match id {
+            Some(id) => indices[id],
+            None => default_material(&mut file),
+        };
+        mesh.emission = id.and_then(|id| emissions[id].clone());
+        file.meshes.push(mesh);
+    }
+    if file.meshes.is_empty() {
+        let message = "it holds no faces; a mesh has lines `v x y z` and `f 1 2 3`";
+        return Err(InputError::in_file(path, message));
+    }
+    Ok(file)
+}
+
+fn load_mtl(
+    files: &dyn FileSource,
+    obj: &str,
+    name: &Path,
+    missing: &RefCell<Vec<String>>,
+) -> tobj::MTLLoadResult {
+    let path = beside(obj, &name.to_string_lossy());
+    match files.read(&path) {
+        Ok(bytes) => tobj::load_mtl_buf(&mut &bytes[..]).inspect_err(|e| {
+            missing
+                .borrow_mut()
+                .push(format!("{path}: {}; its materials are grey", words(e)));
+        }),
+        Err(e) => {
+            missing
+                .borrow_mut()
+                .push(format!("{path}: {}; its materials are grey", reason(&e)));
+            Err(LoadError::OpenFileFailed)
+        }
+    }
+}
+
+type Emission = Option<crate::engine::scene::desc::ColorDesc>;
+
+/// Maps the materials; returns the index and the emission of each.
+fn add_materials(
+    materials: &[tobj::Material],
+    path: &str,
+    colors: &mut Colors<'_>,
+    file: &mut ObjFile,
+) -> Result<(Vec<usize>, Vec<Emission>), InputError> {
+    let (mut indices, mut emissions) = (Vec::new(), Vec::new());
+    for m in materials {
+        let material = MtlMaterial {
+            name: m.name.clone(),
+            diffuse: m.diffuse,
+            specular: m.specular,
+            emissive: m.emissive,
+            shininess: m.shininess,
+            dissolve: m.dissolve,
+            ior: m.optical_density,
+            illum: m.illumination_model,
+            diffuse_texture: m.diffuse_texture.clone(),
+            unknown: m
+                .unknown_param
+                .clone()
+                .into_iter()
+                .collect::<HashMap<_, _>>(),
+        };
+        let mapped = mtl::map(&material, path, file.materials.len(), colors)?;
+        indices.push(file.materials.len());
+        emissions.push(mapped.emission);
+        file.materials.extend(mapped.materials);
+    }
+    Ok((indices, emissions))
+}
+
+/// The grey of faces without a material; added when first needed.
+fn default_material(file: &mut ObjFile) -> usize {
+    let grey = mtl::default_material();
+    if let Some(known) = file.materials.iter().position(|m| m.name == grey.name) {
+        return known;
+    }
+    file.materials.push(grey);
+    file.materials.len() - 1
+}
+
+fn convert(name: String, mesh: &tobj::Mesh) -> MeshDesc {
+    let triples = |v: &[f32]| v.chunks_exact(3).map(Vec3::from_slice).collect::<Vec<_>>();
+    let positions = triples(&mesh.positions);
+    let full = |v: Vec<Vec3>| {
+        if v.len() == positions.len() {
+            v
+        } else {
+            Vec::new()
+        }
+    };
+    let uvs: Vec<[f32; 2]> = mesh
+        .texcoords
+        .chunks_exact(2)
+        .map(|t| [t[0], t[1]])
+        .collect();
+    let mut triangles = Vec::with_capacity(mesh.indices.len() / 3);
+    if mesh.face_arities.is_empty() {
+        triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]));
+    } else {
+        let mut rest = &mesh.indices[..];
+        for arity in &mesh.face_arities {
+            let (face, after) = rest.split_at((*arity as usize).min(rest.len()));
+            rest = after;
+            let corners: Vec<Vec3> = face.iter().map(|i| positions[*i as usize]).collect();
+            triangles.extend(triangulate(&corners).iter().map(|t| t.map(|i| face[i])));
+        }
+    }
+    MeshDesc {
+        name,
+        normals: full(triples(&mesh.normals)),
+        uvs: if uvs.len() == positions.len() {
+            uvs
+        } else {
+            Vec::new()
+        },
+        positions,
+        triangles,
+        ..MeshDesc::default()
+    }
+}
+
+fn words(error: &LoadError) -> &'static str {
+    match error {
+        LoadError::PositionParseError => "a vertex is `v x y z` with three numbers",
+        LoadError::NormalParseError => "a normal is `vn x y z` with three numbers",
+        LoadError::TexcoordParseError => "a texture coordinate is `vt u v` with two numbers",
+        LoadError::FaceParseError => "a face is `f a b c` with whole numbers",
+        LoadError::FaceVertexOutOfBounds => "a face names a vertex that is not there",
+        LoadError::FaceTexCoordOutOfBounds => "a face names a texture coordinate that is not there",
+        LoadError::FaceNormalOutOfBounds => "a face names a normal that is not there",
+        LoadError::InvalidPolygon => "a face has at least three vertices",
+        LoadError::MaterialParseError => "a number or a name is missing in this material",
+        LoadError::ReadError => "it is no text",
+        LoadError::InvalidObjectName => "an object has no name",
+        _ => "it cannot be understood as OBJ",
+    }
+}
+
+/// Finds the line of an error by reading the file again, statement by statement.
+fn locate(path: &str, bytes: &[u8], error: &LoadError) -> InputError {
+    let text = String::from_utf8_lossy(bytes);
+    let (mut counts, mut found) = ([0i64; 3], None);
+    for (number, line) in text.lines().enumerate() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let numbers =
+            |n: usize| words.len() > n && words[1..=n].iter().all(|w| w.parse::<f32>().is_ok());
+        let bad = match words.first() {
+            Some(&"v") => {
+                counts[0] += 1;
+                !numbers(3)
+            }
+            Some(&"vt") => {
+                counts[1] += 1;
+                !numbers(2) && !numbers(1)
+            }
+            Some(&"vn") => {
+                counts[2] += 1;
+                !numbers(3)
+            }
+            Some(&"f") => words.len() < 4 || words[1..].iter().any(|w| !is_corner(w, counts)),
+            Some(&"o" | &"g") if matches!(error, LoadError::InvalidObjectName) => words.len() < 2,
+            _ => false,
+        };
+        if bad {
+            found = Some(number + 1);
+            break;
+        }
+    }
+    // An error that only the whole file shows (an index beyond the end) has no line of its own.
+    InputError {
+        file: path.to_owned(),
+        line: found,
+        message: words(error).to_owned(),
+    }
+}
+
+/// Whether `v`, `v/vt`, `v//vn` or `v/vt/vn` refers to what stands before it.
+fn is_corner(word: &str, counts: [i64; 3]) -> bool {
+    let parts: Vec<&str> = word.split('/').collect();
+    parts.len() <= 3
+        && parts
+            .iter()
+            .zip(counts)
+            .enumerate()
+            .all(|(i, (part, count))| match part.parse::<i64>() {
+                Ok(index) => index != 0 && index <= count && -index <= count,
+                Err(_) => i > 0 && part.is_empty(),
+            })
+}
+
+/// Opens an OBJ file as a scene: the camera sees all of it, and a soft sky shines if nothing else
+/// does.
+///
+/// # Errors
+/// As [`read`].
+pub fn open_alone(files: &dyn FileSource, path: &str) -> Result<SceneDesc, InputError> {
+    let file = read(files, path, &mut Colors::new(files))?;
+    let name = Path::new(path)
+        .file_stem()
+        .map_or(String::new(), |s| s.to_string_lossy().into_owned());
+    let mut scene = SceneDesc {
+        name,
+        description: "A mesh opened by itself.".to_owned(),
+        camera: frame_all(&file.meshes),
+        materials: file.materials,
+        meshes: file.meshes,
+        warnings: file.warnings,
+        ..SceneDesc::default()
+    };
+    if scene.meshes.iter().all(|m| m.emission.is_none()) {
+        scene.lights.push(LightDesc::Constant {
+            radiance: Rgb::splat(1.0),
+        });
+        let message = "nothing in this file emits light, so a soft sky of radiance 1 was added";
+        scene.warnings.push(message.to_owned());
+    }
+    Ok(scene)
+}
+
+/// A three-quarter view in which the bounding sphere fits.
+fn frame_all(meshes: &[MeshDesc]) -> CameraDesc {
+    let used = meshes.iter().flat_map(|m| {
+        m.triangles
+            .iter()
+            .flatten()
+            .map(|i| m.positions[*i as usize])
+    });
+    let finite = used.filter(|p| p.is_finite());
+    let (lo, hi) = finite.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(lo, hi), p| {
+        (lo.min(p.into()), hi.max(p.into()))
+    });
+    if !(lo.is_finite() && hi.is_finite()) {
+        return CameraDesc::default();
+    }
+    let centre = (lo + hi) * 0.5;
+    let radius = ((hi - lo).length() * 0.5).max(f32::MIN_POSITIVE);
+    let camera = CameraDesc::default();
+    // The sphere touches the cone of the view: sin(half angle) = radius / distance.
+    let distance = radius / (0.5 * camera.vfov_deg).to_radians().sin();
+    let direction = Vec3A::new(0.6, 0.45, 1.0).normalize();
+    CameraDesc {
+        position: (centre + direction * distance).into(),
+        target: centre.into(),
+        ..camera
+    }
+}

@@ -1,0 +1,128 @@
+//! The fields `meshes` and `spheres`.
+
+use glam::Affine3A;
+
+use super::error::InputError;
+use super::fields::Fields;
+use super::materials::{Colors, Limit, find};
+use super::source::{FileSource, beside};
+use super::value::Node;
+use super::{obj, scene_file, transform};
+use crate::engine::scene::desc::{MeshDesc, NamedMaterial, SceneDesc, SphereDesc};
+
+/// Reads one entry of `meshes` into `scene`: one mesh, or as many as its file has materials.
+pub fn read_mesh(
+    file: &str,
+    node: &Node,
+    files: &dyn FileSource,
+    colors: &mut Colors<'_>,
+    scene: &mut SceneDesc,
+) -> Result<(), InputError> {
+    let mut f = Fields::new(file, node, "mesh")?;
+    if let Some((name, _)) = f.text("name")? {
+        f.what = format!("mesh \"{name}\"");
+    }
+    let (mesh_file, line) = f.required_text("file", "the name of an OBJ file")?;
+    let material = f.text("material")?;
+    let emission = f
+        .take("emission")
+        .map(|n| colors.color(&f, n, "emission", Limit::Radiance))
+        .transpose()?;
+    let transform = transform::read(&mut f)?;
+    for name in ["interior", "priority"] {
+        scene_file::refuse_media(&mut f, name)?;
+    }
+    let what = f.what.clone();
+    let material = material
+        .map(|(name, line)| find_material(&f, line, name, &scene.materials))
+        .transpose()?;
+    f.finish()?;
+    let path = beside(file, mesh_file);
+    let parsed = obj::read(files, &path, colors).map_err(|e| {
+        // A missing file is the scene's mistake; a broken one is its own.
+        if e.line.is_none() {
+            InputError::at(file, line, format!("{what}: {}: {}", e.file, e.message))
+        } else {
+            e
+        }
+    })?;
+    add_meshes(parsed, material, emission, transform, scene);
+    Ok(())
+}
+
+fn add_meshes(
+    parsed: obj::ObjFile,
+    material: Option<usize>,
+    emission: Option<crate::engine::scene::desc::ColorDesc>,
+    transform: Option<Affine3A>,
+    scene: &mut SceneDesc,
+) {
+    let first = scene.materials.len();
+    if material.is_none() {
+        scene.materials.extend(parsed.materials);
+        scene.warnings.extend(parsed.warnings);
+    }
+    for mesh in parsed.meshes {
+        scene.meshes.push(MeshDesc {
+            material: material.unwrap_or(first + mesh.material),
+            emission: if material.is_some() {
+                emission.clone()
+            } else {
+                emission.clone().or(mesh.emission)
+            },
+            transform,
+            ..mesh
+        });
+    }
+}
+
+fn find_material(
+    f: &Fields<'_>,
+    line: usize,
+    name: &str,
+    materials: &[NamedMaterial],
+) -> Result<usize, InputError> {
+    let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
+    find(f, line, name, &names)
+}
+
+/// Reads one entry of `spheres`.
+pub fn read_sphere(
+    file: &str,
+    node: &Node,
+    materials: &[NamedMaterial],
+) -> Result<SphereDesc, InputError> {
+    let mut f = Fields::new(file, node, "sphere")?;
+    let name = f.text("name")?.map_or_else(String::new, |n| n.0.to_owned());
+    if !name.is_empty() {
+        f.what = format!("sphere \"{name}\"");
+    }
+    let mut center = f.vector("center")?;
+    let mut radius = f.number("radius", "a length above 0", |x| x > 0.0)?;
+    let (material, line) = f.required_text("material", "the name of a material")?;
+    let material = find_material(&f, line, material, materials)?;
+    let emission = f
+        .take("emission")
+        .map(|n| f.amounts(n, "emission"))
+        .transpose()?;
+    let inward = f.switch_or("inward", false)?;
+    if let Some(transform) = transform::read(&mut f)? {
+        let scale = transform::uniform_scale(&transform).ok_or_else(|| {
+            f.error("a sphere stays a sphere: its transform scales all directions alike")
+        })?;
+        center = transform.transform_point3(center);
+        radius *= scale;
+    }
+    for name in ["interior", "priority"] {
+        scene_file::refuse_media(&mut f, name)?;
+    }
+    f.finish()?;
+    Ok(SphereDesc {
+        name,
+        center,
+        radius,
+        material,
+        emission,
+        inward,
+    })
+}
