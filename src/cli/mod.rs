@@ -75,3 +75,12 @@ fn window(_scene: Option<&str>) -> Result<(), CliError> {
             .to_owned(),
     ))
 }
+
+/// Opens the window.
+#[cfg(feature = "viewer")]
+fn window(_scene: Option<&str>) -> Result<(), CliError> {
+    Err(CliError::Failed(
+        "the window is not built in; `lightscope render SCENE -o OUT.png` renders without one"
+            .to_owned(),
+    ))
+}

@@ -43,7 +43,7 @@ pub fn job(scene: &Arc<Scene>, integrator: &str, set: &[(&str, &str)]) -> Render
     let camera = scene.camera;
     RenderJob {
         scene: Arc::clone(scene),
-        camera: Camera::new(&camera),
+        camera: Camera::new(&camera).expect("a view"),
         size: UVec2::new(camera.width, camera.height),
         settings,
         navigating: false,
