@@ -54,7 +54,7 @@ fn spheres_light_as_the_cosine_law_says() {
     for ratio in [1.0001_f32, 1.01, 2.0, 100.0, 1e6] {
         for radius in [1e-6_f32, 1.0, 1e5] {
             let lit = sphere(Vec3::ZERO, radius, false);
-            let light = lit.lights.get(0).unwrap();
+            let light = lit.lights.get(0);
             let p = Vec3A::new(0.0, 0.6, 0.8) * (ratio * radius);
             let d = p.as_dvec3().length() / f64::from(radius);
             let n = -p.normalize();
@@ -82,7 +82,7 @@ fn disk_light_from_above_a_pinhead_to_a_sky() {
         let p = Vec3A::new(0.0, 0.0, 0.0);
         let e = estimate(100_000, 2, |u, v| {
             let (id, pmf) = lit.lights.sample(v.x).unwrap();
-            irradiance(lit.lights.get(id).unwrap(), p, Vec3A::Y, u) / f64::from(pmf)
+            irradiance(lit.lights.get(id), p, Vec3A::Y, u) / f64::from(pmf)
         });
         let exact = 3.0 * PI * ratio * ratio / (1.0 + ratio * ratio);
         assert_near(&format!("r/h = {ratio}"), e, exact);
@@ -100,7 +100,7 @@ fn small_lights_far_away_tend_to_points() {
         let p = Vec3A::new(1.0, -2.0, 2.0);
         let n = -p.normalize();
         for (name, lit, cos) in [("triangle", triangle, 2.0 / 3.0), ("sphere", ball, 1.0)] {
-            let light = lit.lights.get(0).unwrap();
+            let light = lit.lights.get(0);
             let (mean, _) = estimate(200, 3, |u, _| irradiance(light, p, n, u));
             let exact = 3.0 * area * cos / 9.0;
             let off = (mean / exact - 1.0).abs();
@@ -115,7 +115,7 @@ fn small_lights_far_away_tend_to_points() {
 #[test]
 fn inside_a_shining_sphere_the_irradiance_is_the_same_everywhere() {
     let lit = sphere(Vec3::new(5.0, 0.0, 0.0), 2.0, true);
-    let light = lit.lights.get(0).unwrap();
+    let light = lit.lights.get(0);
     // Nearer to the wall, what faces it makes the samples by area noisy.
     for x in [0.0, 0.5, 0.9] {
         let p = Vec3A::new(5.0 + 2.0 * x, 0.0, 0.0);
@@ -140,7 +140,7 @@ fn nothing_is_emitted_backwards() {
     let outward = sphere(Vec3::ZERO, 1.0, false);
     let behind = Vec3A::new(0.2, 0.2, -0.5);
     for lit in [&triangle, &quad, &outward] {
-        let light = lit.lights.get(0).unwrap();
+        let light = lit.lights.get(0);
         let toward = (Vec3A::new(0.2, 0.3, 0.0) - behind).normalize();
         let ray = Ray::new(behind, toward);
         let hit = lit.geometry.intersect(&ray).unwrap();
@@ -155,7 +155,7 @@ fn nothing_is_emitted_backwards() {
 #[test]
 fn a_ray_to_a_sample_sees_what_the_sample_says() {
     for (i, (name, lit)) in every_kind().into_iter().enumerate() {
-        let light = lit.lights.get(0).unwrap();
+        let light = lit.lights.get(0);
         for k in 0..2000 {
             let mut s = IndependentSampler::new(1, Stream::Test, (700 + i as u64, k));
             let Some(sample) = light.sample_li(VIEW, s.next_2d()) else {
@@ -224,11 +224,11 @@ fn flux_on_a_receiver_is_the_same_from_either_end() {
     for (i, (name, mut lit)) in every_kind().into_iter().enumerate() {
         // The normal faces the lights; the sky shines on it from below as well as they do.
         let n = -e1.cross(e2).normalize();
-        if lit.lights.get(0).unwrap().is_infinite() {
+        if lit.lights.get(0).is_infinite() {
             // A scene that holds the receiver: its bounding sphere must be lit in full.
             lit = infinite_with_receiver(name);
         }
-        let light = lit.lights.get(0).unwrap();
+        let light = lit.lights.get(0);
         let stream = 20 + 2 * i as u64;
         let (li, li_error) = estimate(200_000, stream, |u, v| {
             let p = corner + e1 * v.x + e2 * v.y;
@@ -290,7 +290,7 @@ fn infinite_with_receiver(name: &str) -> support::Lit {
 #[test]
 fn power_is_the_mean_flux() {
     for (i, (name, lit)) in every_kind().into_iter().enumerate() {
-        let light = lit.lights.get(0).unwrap();
+        let light = lit.lights.get(0);
         let e = estimate(100_000, 50 + i as u64, |u, v| {
             f64::from(light.sample_le(u, v).unwrap().flux()[0])
         });
@@ -302,7 +302,7 @@ fn power_is_the_mean_flux() {
 fn the_ends_of_the_unit_interval_are_finite() {
     let ends = [0.0, f32::MIN_POSITIVE, 0.5, ONE_MINUS_EPSILON];
     for (name, lit) in every_kind() {
-        let light = lit.lights.get(0).unwrap();
+        let light = lit.lights.get(0);
         for k in 0..256 {
             let u = Vec2::new(ends[k % 4], ends[k / 4 % 4]);
             let v = Vec2::new(ends[k / 16 % 4], ends[k / 64]);
@@ -388,7 +388,7 @@ fn environments_refuse_what_is_no_radiance_and_take_a_sun() {
     let mut pixels = vec![[1.0; 3]; 64 * 32];
     pixels[9 * 64 + 20] = [1e6; 3];
     let lights = Lights::build(&[environment(pixels, 64)], &[], &geometry).unwrap();
-    let light = lights.get(0).unwrap();
+    let light = lights.get(0);
     let total = estimate(50_000, 90, |u, _| {
         let s = light.sample_li(Vec3A::ZERO, u).unwrap();
         f64::from(s.radiance[0]) / f64::from(s.pdf_dir)
