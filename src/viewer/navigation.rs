@@ -109,6 +109,22 @@ pub fn fly(view: &CameraDesc, step: Vec3) -> CameraDesc {
     }
 }
 
+/// The same view with its target as deep as `center`, unless it lies within `radius` of it: files
+/// often put the target just before the eye, and orbits would turn about nothing.
+#[must_use]
+pub fn with_target_in(view: &CameraDesc, center: Vec3, radius: f32) -> CameraDesc {
+    let [_, _, forward] = axes(view);
+    let depth = (center - view.position).dot(forward);
+    let target = view.position + forward * depth;
+    // Behind the eye, or in it, there is nothing to turn about.
+    let before_eye = depth.is_finite() && depth > 0.05 * view.position.distance(center);
+    if before_eye && view.target.distance(center) > radius {
+        CameraDesc { target, ..*view }
+    } else {
+        *view
+    }
+}
+
 /// Looks at `point`, which becomes the centre of orbits and, with a lens, is in focus.
 #[must_use]
 pub fn focus(view: &CameraDesc, point: Vec3) -> CameraDesc {

@@ -12,6 +12,7 @@ use super::exposure::auto_exposure;
 use super::gpu::Placement;
 use super::history::History;
 use super::model::Model;
+use super::navigation;
 use super::notices::Notices;
 use super::source::SceneSource;
 use crate::engine::film::{Frame, ToneMap};
@@ -125,6 +126,18 @@ impl Workspace {
         if !again {
             self.placement = Placement::default();
             self.history = History::new(&self.model);
+        }
+    }
+
+    /// To be called before the hand moves the camera.
+    pub fn take_hold(&mut self) {
+        self.navigating = true;
+        // The view the scene opens with is rendered as it is written, until it is moved.
+        if self.model.view == self.model.home
+            && let Some(scene) = &self.scene
+        {
+            let (center, radius) = scene.geometry.bounding_sphere();
+            self.model.view = navigation::with_target_in(&self.model.view, center.into(), radius);
         }
     }
 

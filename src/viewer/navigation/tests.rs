@@ -100,8 +100,22 @@ fn looking_turns_about_the_eye() {
     let v = view();
     let moved = look(&v, Vec2::new(0.2, 0.0));
     assert_eq!(moved.position, v.position);
-    // The hand takes the scene along, as when it orbits.
-    assert!(seen_at(&moved, v.target).x > 0.05);
+    // Looking to the right, what was in the middle is on the left.
+    assert!(seen_at(&moved, v.target).x < -0.05);
+    let moved = look(&v, Vec2::new(0.0, 0.2));
+    assert!(seen_at(&moved, v.target).y < -0.05);
+}
+
+#[test]
+fn the_target_moves_along_the_view_to_the_middle_of_the_scene() {
+    let v = view();
+    let center = v.position + axes(&v)[2] * 20.0 + axes(&v)[0] * 3.0;
+    let deep = with_target_in(&v, center, 5.0);
+    assert_near(seen_at(&deep, v.target), Vec2::ZERO);
+    assert!((distance(&deep) - 20.0).abs() < 1e-3);
+    assert_eq!(with_target_in(&v, center, 50.0), v, "it lies in the scene");
+    let behind = v.position - axes(&v)[2];
+    assert_eq!(with_target_in(&v, behind, 0.1), v);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::widgets;
 use crate::engine::film::ToneMap;
 use crate::engine::path::COMPONENTS;
 use crate::viewer::commands::{Command, binding};
-use crate::viewer::display::{EXPOSURES, PARTS, Shown};
+use crate::viewer::display::{EXPOSURES, Shown};
 use crate::viewer::workspace::Workspace;
 
 /// Draws the controls.
@@ -21,10 +21,10 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     );
     let shows_parts = display.shown == Shown::Grid || display.shown.solo().is_some();
     if shows_parts {
-        for part in 0..PARTS {
+        for (part, (name, _)) in COMPONENTS.iter().enumerate() {
             if display.shown == Shown::Grid || display.shown.solo() == Some(part) {
                 let slider = Slider::new(&mut display.part_exposure[part], EXPOSURES)
-                    .text(format!("+ {}", COMPONENTS[part].0))
+                    .text(format!("+ {name}"))
                     .suffix(" EV")
                     .max_decimals(2);
                 ui.add(slider).on_hover_text(

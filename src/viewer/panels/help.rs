@@ -33,6 +33,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         .resizable(false)
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .max_height(height)
+        .default_height(height)
         .vscroll(true)
         .show(ui.ctx(), |ui| {
             Grid::new("hands")

@@ -7,10 +7,12 @@ use crate::viewer::workspace::Workspace;
 
 /// Distance from the corner in points.
 const MARGIN: f32 = 12.0;
+/// Height of the status line in points.
+const STATUS: f32 = 28.0;
 /// Widest in points.
 const WIDTH: f32 = 460.0;
 
-/// Draws what there is to say, top left.
+/// Draws what there is to say, bottom left.
 pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     let errors = workspace.notices.errors().to_vec();
     let messages: Vec<String> = workspace.notices.messages().map(str::to_owned).collect();
@@ -19,7 +21,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     }
     let mut read = None;
     Area::new(Id::unique("notices"))
-        .anchor(Align2::LEFT_TOP, vec2(MARGIN, MARGIN))
+        .anchor(Align2::LEFT_BOTTOM, vec2(MARGIN, -MARGIN - STATUS))
         .show(ui.ctx(), |ui| {
             ui.set_max_width(WIDTH.min(ui.ctx().content_rect().width() - 2.0 * MARGIN));
             for (subject, sentence) in &errors {

@@ -59,8 +59,13 @@ fn pixels(min: f32, max: f32, scale: f32) -> u32 {
     ((max * scale).round() - (min * scale).round()).max(0.0) as u32
 }
 
-/// Names of pictures that stand side by side.
+/// Names of pictures that stand side by side, and lines between them.
 fn labels(ui: &Ui, rect: Rect, tiles: &[Tile]) {
+    if tiles.len() > 1 {
+        let line = egui::Stroke::new(1.0, Color32::from_gray(70));
+        ui.painter().hline(rect.x_range(), rect.center().y, line);
+        ui.painter().vline(rect.center().x, rect.y_range(), line);
+    }
     for tile in tiles {
         let Some(label) = tile.label else { continue };
         let [x, y, _, _] = tile.area;
@@ -107,6 +112,7 @@ fn drag(ui: &Ui, response: &Response, workspace: &mut Workspace) {
     if moved == egui::Vec2::ZERO {
         return;
     }
+    workspace.take_hold();
     let step = Vec2::new(moved.x, moved.y) / response.rect.height().max(1.0);
     let view = &workspace.model.view;
     let left = response.dragged_by(PointerButton::Primary);
@@ -140,10 +146,10 @@ fn wheel(ui: &Ui, response: &Response, workspace: &mut Workspace) {
         i.events.iter().map(of).sum::<f32>()
     });
     if notches != 0.0 {
+        workspace.take_hold();
         let at = centered(response.rect, cursor);
         let factor = NOTCH.powf(notches);
         workspace.model.view = navigation::dolly(&workspace.model.view, factor, at);
-        workspace.navigating = true;
     }
 }
 
@@ -154,9 +160,9 @@ fn fly(ui: &Ui, response: &Response, workspace: &mut Workspace) {
     }
     let (seconds, shift) = ui.input(|i| (i.stable_dt.min(MAX_STEP), i.modifiers.shift));
     let speed = SPEED * if shift { FAST } else { 1.0 };
+    workspace.take_hold();
     let step = direction * navigation::distance(&workspace.model.view) * speed * seconds;
     workspace.model.view = navigation::fly(&workspace.model.view, step);
-    workspace.navigating = true;
     response.ctx.request_repaint();
 }
 
