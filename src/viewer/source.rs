@@ -3,8 +3,9 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::engine::io::embedded;
 use crate::engine::io::scene_file;
-use crate::engine::scene::{SceneDesc, embedded};
+use crate::engine::scene::SceneDesc;
 
 /// An embedded scene or a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
