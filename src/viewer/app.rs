@@ -253,7 +253,13 @@ impl App {
     }
 
     fn carry_out(&mut self, event_loop: &ActiveEventLoop) {
-        for request in std::mem::take(&mut self.workspace.requests) {
+        let requests = std::mem::take(&mut self.workspace.requests);
+        // While a lower resolution stands in for the picture, what takes it away waits.
+        let (waiting, due): (Vec<Request>, Vec<Request>) = requests
+            .into_iter()
+            .partition(|request| request.needs_picture() && self.workspace.is_coarse());
+        self.workspace.requests = waiting;
+        for request in due {
             match request {
                 Request::Load(source) => self.load(Opening::scene(source), None, false),
                 Request::Open(path) => match Opening::file(&path) {

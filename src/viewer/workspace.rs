@@ -50,6 +50,13 @@ pub enum Request {
     Quit,
 }
 
+impl Request {
+    /// Whether it takes the picture away.
+    pub fn needs_picture(&self) -> bool {
+        matches!(self, Self::Save(_) | Self::SaveAs(_) | Self::Copy)
+    }
+}
+
 /// What is saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -249,6 +256,11 @@ impl Workspace {
         if self.placement.zoom == 1.0 {
             self.placement = Placement::default();
         }
+    }
+
+    /// True while a lower resolution stands in for the picture.
+    pub fn is_coarse(&self) -> bool {
+        self.frame.as_ref().is_some_and(|frame| frame.is_coarse())
     }
 
     /// Takes a frame over; a failed one says why and leaves the old picture.

@@ -86,7 +86,11 @@ fn a_drag_within_one_repaint_is_not_lost() {
         pressed,
         modifiers: Modifiers::NONE,
     };
-    let events = [press(MIDDLE, true), Event::PointerMoved(to), press(to, false)];
+    let events = [
+        press(MIDDLE, true),
+        Event::PointerMoved(to),
+        press(to, false),
+    ];
     desk.input_mut().events.extend(events);
     desk.step();
     assert_ne!(view(&desk).position, before.position);
