@@ -59,9 +59,6 @@ impl RayIntegrator for PathTracer {
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let first = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * walk.depth;
-            sampler.seek(first);
-            let (direction, event, roulette) =
-                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
 
             // The next surface, or the sky.
             stats.rays += 1;
@@ -91,6 +88,9 @@ impl RayIntegrator for PathTracer {
             }
 
             // One event, drawn by the roulette between the lobes.
+            sampler.seek(first);
+            let (direction, event, roulette) =
+                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
             let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Radiance) else {
                 stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
                 return;
