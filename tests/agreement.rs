@@ -27,25 +27,19 @@ const SCENES: [&str; 8] = [
 const RUNS: u64 = 32;
 
 /// Layers found by rare bright samples: by chance hits of a small light behind a mirror or glass,
-/// or, in mode kajiya, by shadow rays into the narrow lobe of a rough metal that are not weighed
-/// against hits. Their blocks are judged by the variance of the whole layer
-/// ([`Blocks::pool_variance`]), their image mean as any other. In mode hits all layers are such.
-const RARE: [(&str, &str, &[&str]); 4] = [
-    ("furnace", "", &["indirect"]),
-    ("cornell-glass", "", &["caustic", "specular"]),
-    ("caustic-ring", "", &["caustic", "specular"]),
-    (
-        "cornell-glossy",
-        "kajiya",
-        &["whole", "specular", "caustic", "indirect"],
-    ),
+/// or by shadow rays into the narrow lobe of a rough metal. Their blocks, and those of the whole,
+/// are judged by the variance of the whole layer ([`Blocks::pool_variance`]), their image mean as
+/// any other. In mode hits all layers are such.
+const RARE: [(&str, &[&str]); 4] = [
+    ("cornell-glass", &["specular", "caustic"]),
+    ("cornell-glossy", &["specular", "caustic", "indirect"]),
+    ("caustic-ring", &["specular", "caustic"]),
+    ("furnace", &["indirect"]),
 ];
 
-fn is_rare(scene: &str, mode: &str, layer: &str) -> bool {
-    let rare = |r: &(&str, &str, &[&str])| {
-        r.0 == scene && (r.1.is_empty() || r.1 == mode) && r.2.contains(&layer)
-    };
-    mode == "hits" || RARE.iter().any(rare)
+fn is_rare(scene: &str, set: &[(&str, &str)], layer: &str) -> bool {
+    let listed = RARE.iter().any(|r| r.0 == scene && r.1.contains(&layer));
+    listed || layer != "whole" && set.contains(&("mode", "hits"))
 }
 
 /// A reference layer and its standard error.
@@ -85,16 +79,19 @@ fn complaints(scene: &str, set: &[(&str, &str)], passes: u64, sharp: f64) -> Vec
     let (frames, width) = runs(scene, set, passes);
     let means = frames.iter().map(|f| mean(&f.layers[0].pixels));
     let whole = means.sum::<f64>() / RUNS as f64;
-    let mode = set.iter().find(|s| s.0 == "mode").map_or("mis", |s| s.1);
+    let references = LAYERS.map(|layer| reference_layer(scene, layer, width));
+    let mut ours = [0, 1, 2, 3, 4].map(|layer| layer_blocks(&frames, layer, width));
+    for index in 1..LAYERS.len() {
+        if is_rare(scene, set, LAYERS[index]) {
+            ours[index].pool_variance(&references[index]);
+            let (whole, parts) = ours.split_at_mut(1);
+            whole[0].include_pooled(&parts[index - 1]);
+        }
+    }
     let mut all = Vec::new();
     for (index, layer) in LAYERS.iter().enumerate() {
         assert_eq!(frames[0].layers[index].label, *layer);
-        let mut ours = layer_blocks(&frames, index, width);
-        let reference = reference_layer(scene, layer, width);
-        if is_rare(scene, mode, layer) {
-            ours.pool_variance(&reference);
-        }
-        let v = compare(layer, &ours, &reference, whole, LAYERS.len());
+        let v = compare(layer, &ours[index], &references[index], whole, LAYERS.len());
         println!(
             "{scene} {set:?} {layer}: worst block {:.1} standard errors; would catch a bias of \
              {:.2} % of the image, {:.2} % in a block",

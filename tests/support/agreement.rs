@@ -104,6 +104,15 @@ impl Blocks {
         self.least = Some(expected.mean.iter().map(least).collect());
     }
 
+    /// Gives the blocks of a sum at least the variances that were given to those of a `part`.
+    pub fn include_pooled(&mut self, part: &Self) {
+        let Some(more) = &part.least else { return };
+        let least = self.least.get_or_insert_with(|| vec![[0.0; 3]; more.len()]);
+        for (sum, more) in least.iter_mut().zip(more) {
+            (0..3).for_each(|c| sum[c] += more[c]);
+        }
+    }
+
     /// Variance of the mean of channel `c` of one block.
     fn block_variance(&self, block: usize, c: usize) -> f64 {
         let least = self.least.as_ref().map_or(0.0, |l| l[block][c]);
