@@ -1,6 +1,7 @@
 //! `lightscope bench`: how fast this machine renders.
 
 mod first_frame;
+mod photons;
 mod rays;
 mod scenes;
 
@@ -11,6 +12,7 @@ use super::error::CliError;
 pub fn run(what: &Bench) -> Result<(), CliError> {
     match what {
         Bench::FirstFrame(args) => first_frame::run(args),
+        Bench::Photons(args) => photons::run(args),
         Bench::Rays(args) => rays::run(args),
         Bench::Scenes(args) => scenes::run(args),
     }

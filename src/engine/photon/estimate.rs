@@ -52,7 +52,7 @@ impl Disc {
     /// Squared distance in the flattened metric; `None` for a photon that must not count: one
     /// that arrived from the other side, or straight from a light where those are left out.
     #[inline]
-    fn metric<T: Record>(&self, photon: &T, d: Vec3A, d2: f32) -> Option<f32> {
+    pub fn metric<T: Record>(&self, photon: &T, d: Vec3A, d2: f32) -> Option<f32> {
         if self.without_direct && photon.events() == 0 || photon.direction().dot(self.n) <= 0.0 {
             return None;
         }
@@ -119,6 +119,9 @@ impl PhotonMap {
     #[inline]
     pub fn locate(&self, disc: &Disc, nearest: &mut Nearest) {
         nearest.begin(disc.max_radius * disc.max_radius);
+        if disc.without_direct && self.counts.direct == self.counts.stored {
+            return; // the search would reject every photon around
+        }
         match &self.tree {
             Tree::Packed(tree) => {
                 tree.locate_photons(disc.p, nearest, |t, d, d2| disc.metric(t, d, d2))

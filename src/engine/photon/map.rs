@@ -1,6 +1,5 @@
 //! A photon map: how many photons were emitted, what was stored, and the tree of it.
 
-use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::emission::Emission;
@@ -10,7 +9,7 @@ use super::trace::{MapKind, Roulette, Walks, Witness};
 use crate::engine::geometry::SurfaceInteraction;
 use crate::engine::math::Rgb;
 use crate::engine::path::PathClasses;
-use crate::engine::sampling::{SobolSampler, Stream};
+use crate::engine::sampling::{IndependentSampler, Stream};
 use crate::engine::scene::Scene;
 
 /// How a photon is stored.
@@ -46,6 +45,8 @@ pub struct MapCounts {
     pub emitted: u64,
     /// Photons stored.
     pub stored: u64,
+    /// Those among them that come straight from a light.
+    pub direct: u64,
     /// Power of those stored, W: what arrives at diffuse surfaces, each arrival counted.
     pub power: [f64; 3],
     /// Rays traced.
@@ -58,6 +59,7 @@ impl MapCounts {
     fn add(&mut self, o: &Self) {
         self.emitted += o.emitted;
         self.stored += o.stored;
+        self.direct += o.direct;
         (0..3).for_each(|c| self.power[c] += o.power[c]);
         self.rays += o.rays;
         self.cut += o.cut;
@@ -118,11 +120,11 @@ impl PhotonMap {
         let unit = power_unit(scene, settings.photons);
         let (tree, counts) = match settings.packing {
             Packing::Packed => {
-                let (photons, counts) = first_pass(&walks, settings, unit, check)?;
+                let (photons, counts) = trace_photons(&walks, settings, check)?;
                 (Tree::Packed(KdTree::build(photons, settings.split)), counts)
             }
             Packing::Full => {
-                let (photons, counts) = first_pass(&walks, settings, unit, check)?;
+                let (photons, counts) = trace_photons(&walks, settings, check)?;
                 (Tree::Full(KdTree::build(photons, settings.split)), counts)
             }
         };
@@ -199,6 +201,7 @@ struct Chunk<T> {
 impl<T: Record> Witness for Chunk<T> {
     fn stored(&mut self, photon: Photon, si: &SurfaceInteraction, u: f32) {
         self.counts.stored += 1;
+        self.counts.direct += u64::from(photon.events == 0);
         let power: Rgb = photon.power;
         (0..3).for_each(|c| self.counts.power[c] += f64::from(power[c]));
         self.photons.push(T::pack(&photon, si.n_g, self.unit, u));
@@ -226,7 +229,9 @@ fn chunk<T: Record>(
         unit,
     };
     for path in paths {
-        let mut sampler = SobolSampler::new(item.0, Stream::Light, (item.1, path));
+        // Independent numbers: the estimate (n − 1)/(πr²) holds for photons that keep no distance
+        // of each other; for well-spread ones of a sequence it would be too small.
+        let mut sampler = IndependentSampler::new(item.0, Stream::Light, (item.1, path));
         chunk.counts.rays += walks.follow(share, &mut sampler, &mut chunk);
     }
     chunk
@@ -235,12 +240,15 @@ fn chunk<T: Record>(
 /// Emits as many photons as it takes to store about the number wanted. How many is told by a
 /// pilot of other random numbers, so that the number does not depend on the photons themselves:
 /// the estimate stays unbiased.
-fn first_pass<T: Record + Zeroable, E: Send>(
+///
+/// # Errors
+/// What `check` returns; it is asked once a piece of work.
+pub fn trace_photons<T: Record, E: Send>(
     walks: &Walks<'_>,
     settings: &MapSettings,
-    unit: f32,
     check: &(impl Fn() -> Result<(), E> + Sync),
 ) -> Result<(Vec<T>, MapCounts), E> {
+    let unit = power_unit(walks.scene, settings.photons);
     let wanted = settings.photons as u64;
     let item = |pilot: u64| {
         let kind = u64::from(walks.kind == MapKind::Caustic);

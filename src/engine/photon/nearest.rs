@@ -105,11 +105,12 @@ fn distance(key: u64) -> f32 {
     f32::from_bits((key >> 32) as u32)
 }
 
-/// A subtree that is still to be looked at.
+/// A split whose photon and far side are still to be looked at.
 #[derive(Clone, Copy, Default)]
 struct Open {
-    node: usize,
-    /// Distance from the query to the subtree's region along each axis.
+    /// The child across the split.
+    far: usize,
+    /// Distance from the query to that child's region along each axis.
     offset: Vec3A,
     d2: f32,
 }
@@ -133,34 +134,38 @@ impl<T: Record> KdTree<T> {
         let mut stack = [Open::default(); MAX_LEVELS];
         let mut height = 0;
         let (mut node, mut offset) = (1, Vec3A::ZERO);
+        let look = |photon: &T, node: usize, nearest: &mut Nearest| {
+            let d = Vec3A::from_array(*photon.position()) - p;
+            let d2 = d.length_squared();
+            if d2 < nearest.r2
+                && let Some(d2) = metric(photon, d, d2)
+                && d2 < nearest.r2
+            {
+                nearest.push(d2, node - 1);
+            }
+        };
         loop {
             // Down to a leaf, always to the side of the query first.
             while let Some(photon) = nodes.get(node - 1) {
-                let d = Vec3A::from_array(*photon.position()) - p;
-                let d2 = d.length_squared();
-                if d2 < nearest.r2
-                    && let Some(d2) = metric(photon, d, d2)
-                    && d2 < nearest.r2
-                {
-                    nearest.push(d2, node - 1);
+                if 2 * node > nodes.len() {
+                    look(photon, node, nearest);
+                    break;
                 }
                 let axis = photon.axis();
                 let beyond = query[axis] - photon.position()[axis];
                 let near = 2 * node + usize::from(beyond > 0.0);
-                let mut far = offset;
-                far[axis] = beyond;
-                let d2 = far.length_squared();
-                if d2 < nearest.r2 && (near ^ 1) <= nodes.len() {
-                    stack[height] = Open {
-                        node: near ^ 1,
-                        offset: far,
-                        d2,
-                    };
-                    height += 1;
-                }
+                let mut across = offset;
+                across[axis] = beyond;
+                stack[height] = Open {
+                    far: near ^ 1,
+                    offset: across,
+                    d2: across.length_squared(),
+                };
+                height += 1;
                 node = near;
             }
-            // Back to the last subtree that can still hold a nearer one.
+            // Back to the last split that something nearer may lie beyond; the photon that splits
+            // lies there, too.
             loop {
                 if height == 0 {
                     return;
@@ -170,7 +175,10 @@ impl<T: Record> KdTree<T> {
                     break;
                 }
             }
-            (node, offset) = (stack[height].node, stack[height].offset);
+            (node, offset) = (stack[height].far, stack[height].offset);
+            if let Some(photon) = nodes.get(node / 2 - 1) {
+                look(photon, node / 2, nearest);
+            }
         }
     }
 }
