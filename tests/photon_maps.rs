@@ -16,8 +16,8 @@ use lightscope::engine::math::Rgb;
 use lightscope::engine::path::PathClasses;
 use lightscope::engine::photon::emission::Emission;
 use lightscope::engine::photon::{
-    Disc, Kernel, MapKind, MapSettings, Nearest, Packing, PhotonMap, ProjectionMap, Roulette,
-    SplitRule,
+    Disc, Kernel, MapKind, MapSettings, Nearest, Numbers, Packing, PhotonMap, ProjectionMap,
+    Roulette, SplitRule,
 };
 use lightscope::engine::sampling::{IndependentSampler, Sampler, Stream};
 use lightscope::engine::scene::Scene;
@@ -30,6 +30,7 @@ fn settings(photons: usize, index: u64) -> MapSettings {
         roulette: Roulette::Keep,
         packing: Packing::Full,
         split: SplitRule::Widest,
+        numbers: Numbers::Independent,
         seed: 1,
         index,
     }
@@ -336,8 +337,13 @@ fn mirror_image() -> (std::sync::Arc<Scene>, f64, f64) {
 fn bias_falls_with_the_square_of_the_radius() {
     let (scene, distance, radiance) = mirror_image();
     let exact = radiance / (distance * distance);
+    // The radius is fixed, so well-spread photons bring no bias of their own, and less noise.
+    let sobol = |index| MapSettings {
+        numbers: Numbers::Sobol,
+        ..settings(60_000, index)
+    };
     let maps: Vec<PhotonMap> = (0..16)
-        .map(|i| build(&scene, MapKind::Caustic, &settings(60_000, i)))
+        .map(|i| build(&scene, MapKind::Caustic, &sobol(i)))
         .collect();
     let si = landing(&scene, Vec3::Y, Vec3::NEG_Y);
     let mut fit = Vec::new();
@@ -403,7 +409,7 @@ fn the_estimate_of_few_photons_is_unbiased_where_light_is_even() {
         .collect();
     // About 1000 photons a m²: a radius of 0.05 holds 8.
     for kernel in Kernel::ALL {
-        for (n, radius) in [(2, 0.5), (5, 0.5), (8, 0.05), (20, 0.05), (50, 0.3)] {
+        for (n, radius) in [(5, 0.5), (8, 0.5), (8, 0.05), (20, 0.05), (50, 0.3)] {
             let each = |map: &PhotonMap| {
                 let mut sum = 0.0;
                 for i in 0..400 {

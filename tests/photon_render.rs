@@ -53,12 +53,12 @@ fn report(job: &RenderJob, seed: u64, maps: u32) -> Vec<NoiseBias> {
         .0
 }
 
-/// Sixteen runs of four passes over fresh maps against the reference, within the bias that the
+/// Sixteen runs of two passes over fresh maps against the reference, within the bias that the
 /// program reports from other maps. Whether bias falls as the area (smooth light) or as its root
 /// (an edge or a corner), twice the report covers it: the report assumes the area, and the root
 /// makes it a factor 1.7 too small.
 fn agrees_within_its_bias(scene: &str, set: &[(&str, &str)]) {
-    let passes = 4;
+    let passes = 2;
     let mut all = vec![("fresh-maps", "on")];
     all.extend_from_slice(set);
     let mut job = photon_job(scene, &all);
@@ -110,7 +110,7 @@ fn agrees_within_its_bias(scene: &str, set: &[(&str, &str)]) {
     );
 }
 
-const SMALL: [(&str, &str); 2] = [("global-photons", "40000"), ("caustic-photons", "40000")];
+const SMALL: [(&str, &str); 2] = [("global-photons", "20000"), ("caustic-photons", "20000")];
 
 #[test]
 fn direct_use_agrees_on_cornell_diffuse() {

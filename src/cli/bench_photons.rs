@@ -15,7 +15,7 @@ use crate::engine::photon::map::trace_photons;
 use crate::engine::photon::record::PackedPhoton;
 use crate::engine::photon::trace::Walks;
 use crate::engine::photon::{
-    Disc, KdTree, MapKind, MapSettings, Nearest, Packing, Record, Roulette, SplitRule,
+    Disc, KdTree, MapKind, MapSettings, Nearest, Numbers, Packing, Record, Roulette, SplitRule,
 };
 use crate::engine::scene::Scene;
 
@@ -65,6 +65,7 @@ pub fn build(scene: &Scene, photons: usize) -> TimedTree {
         roulette: Roulette::Keep,
         packing: Packing::Packed,
         split: SplitRule::Widest,
+        numbers: Numbers::Independent,
         seed: 0,
         index: 0,
     };

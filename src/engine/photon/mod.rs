@@ -25,7 +25,7 @@ pub mod trace;
 pub use estimate::{Contribution, Disc, Weighed};
 pub use kdtree::{KdTree, SplitPlane, SplitRule};
 pub use kernel::Kernel;
-pub use map::{MapCounts, MapSettings, Packing, PhotonMap};
+pub use map::{MapCounts, MapSettings, Numbers, Packing, PhotonMap};
 pub use maps::{MapsSettings, PhotonMaps};
 pub use nearest::Nearest;
 pub use projection::ProjectionMap;

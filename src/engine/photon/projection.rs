@@ -9,6 +9,7 @@
 
 use std::f32::consts::PI;
 
+use arrayvec::ArrayVec;
 use glam::{Vec2, Vec3A};
 
 use crate::engine::geometry::{Bounds3, Geometry};
@@ -123,17 +124,14 @@ impl ProjectionMap {
 
     /// A direction from `p` towards a group, and its density in 1/sr.
     pub fn sample_from(&self, p: Vec3A, u_group: f32, u: Vec2) -> Option<(Vec3A, f32)> {
-        let weights = self.groups.iter().map(|g| g.cone(p).solid_angle());
-        let (chosen, total) = pick(weights, u_group)?;
-        let cone = self.groups[chosen].cone(p);
-        let d = Frame::from_normal(cone.axis)
-            .to_world(sample_cone(u, cone.drop))
-            .normalize();
+        let cones: ArrayVec<Cone, MAX_GROUPS> = self.groups.iter().map(|g| g.cone(p)).collect();
+        let (chosen, total) = pick(cones.iter().map(Cone::solid_angle), u_group)?;
+        let cone = cones[chosen];
+        let local = sample_cone(u, cone.drop);
+        let d = Frame::from_normal(cone.axis).to_world(local).normalize();
         // The cone it was drawn from holds it, whatever rounding says.
-        let others = self.groups.iter().enumerate();
-        let covered = others
-            .filter(|(i, g)| *i == chosen || g.cone(p).holds(d))
-            .count();
+        let others = cones.iter().enumerate();
+        let covered = others.filter(|(i, c)| *i == chosen || c.holds(d)).count();
         Some((d, covered as f32 / total))
     }
 
