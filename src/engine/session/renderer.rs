@@ -50,15 +50,19 @@ impl Renderer {
     /// As [`Self::new`].
     pub fn replace(previous: Option<Self>, job: &RenderJob) -> Result<Self, ExpressionError> {
         let mut renderer = Self::new(job)?;
-        if let Some(mut previous) = previous.filter(|p| Arc::ptr_eq(&p.scene, &job.scene)) {
-            let (old, new) = (&previous.settings, &job.settings);
-            let keeps = old.same_integrator(new)
-                || std::ptr::eq(old.integrator, new.integrator)
-                    && previous.integrator.update(&new.params);
-            if keeps {
-                renderer.integrator = previous.integrator;
-            }
-            renderer.preview = previous.preview;
+        let Some(mut previous) = previous else {
+            return Ok(renderer);
+        };
+        if let Some(film) = previous.film.reuse(job.size, renderer.plan.planned) {
+            renderer.film = film;
+        }
+        renderer.preview = previous.preview;
+        let (old, new) = (&previous.settings, &job.settings);
+        let keeps = old.same_integrator(new)
+            || std::ptr::eq(old.integrator, new.integrator)
+                && previous.integrator.update(&new.params);
+        if Arc::ptr_eq(&previous.scene, &job.scene) && keeps {
+            renderer.integrator = previous.integrator;
         }
         Ok(renderer)
     }
