@@ -643,3 +643,41 @@ fn packing_costs_less_than_the_noise() {
         assert!(rms < 0.01 && mean.abs() < 0.001);
     }
 }
+
+/// The ways that are shown one by one are those of the photons in the map.
+#[test]
+fn shown_paths_are_those_of_the_map() {
+    let scene = load(&reference_dir("cornell-glass").join("scene.json"));
+    let classes = PathClasses::components();
+    let settings = settings(500, 3);
+    for kind in [MapKind::Caustic, MapKind::Global] {
+        let map = build(&scene, kind, &settings);
+        let emission = match kind {
+            MapKind::Caustic => Emission::aimed(&scene, ProjectionMap::new(&scene)).expect("glass"),
+            MapKind::Global => Emission::Everywhere,
+        };
+        let all = 0..map.counts.emitted;
+        let paths = map.paths(&scene, &classes, &emission, &settings, all);
+        let mut shown: Vec<_> = paths.iter().flat_map(|p| &p.stored).collect();
+        let stored: Vec<_> = map.photons().collect();
+        let mut stored: Vec<_> = stored.iter().collect();
+        let key = |p: &&lightscope::engine::photon::Photon| {
+            p.p.to_array().map(|x| x.to_bits()).map(|b| b as i32)
+        };
+        shown.sort_by_key(key);
+        stored.sort_by_key(key);
+        assert!(shown.len() == stored.len() && shown.len() > 300);
+        for (a, b) in shown.iter().zip(&stored) {
+            assert_eq!(
+                (a.p, a.wi, a.class, a.events),
+                (b.p, b.wi, b.class, b.events)
+            );
+            assert!((a.power - b.power).max_component().abs() <= 1e-6 * a.power.max_component());
+        }
+        assert!(
+            paths
+                .iter()
+                .all(|p| p.stored.iter().all(|s| p.points.contains(&s.p)))
+        );
+    }
+}

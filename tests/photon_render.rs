@@ -264,7 +264,8 @@ fn what_a_change_does_not_touch_is_kept() {
         renderer
             .render_pass(&Cancel::never())
             .expect("nobody cancels");
-        renderer.frame().photons.expect("maps")
+        let photons = renderer.frame().photons.expect("maps");
+        Arc::clone(photons.maps())
     };
     let built = maps(&mut renderer);
     let set = |name: &str, value: &str| {
@@ -364,4 +365,57 @@ fn building_maps_can_be_cancelled() {
         .expect("nobody cancels");
     let fresh = render(&job, 1);
     assert!(renderer.frame().layers[0].pixels == fresh.layers[0].pixels);
+}
+
+#[test]
+fn what_is_shown_of_an_estimate_is_what_was_rendered() {
+    use glam::Vec2;
+    use lightscope::engine::photon::MapKind;
+    let job = small(
+        "cornell-glass",
+        &[("indirect", "cache"), ("cache-error", "0.4")],
+    );
+    let mut renderer = Renderer::new(&job).expect("classes");
+    renderer
+        .render_pass(&Cancel::never())
+        .expect("nobody cancels");
+    let view = renderer.frame().photons.expect("photons");
+    let records = view.cache().expect("records").records().len();
+    assert!(records > 20, "{records} records");
+    // The floor next to the glass ball's caustic.
+    let camera = job.camera.with_size(UVec2::new(64, 64));
+    let ray = camera.generate_ray(Vec2::new(44.0, 58.0), Vec2::ZERO);
+    let hit = job.scene.geometry.intersect(&ray).expect("the floor");
+    let si = job.scene.geometry.interaction(&ray, &hit);
+    let query = view
+        .query(&job.scene, &si, MapKind::Global)
+        .expect("a global map");
+    assert_eq!(query.photons.len(), 50);
+    let map = view.map(MapKind::Global).expect("a global map");
+    // A diffuse floor: radiance = albedo/π · Σ power · weight.
+    let sum = query
+        .photons
+        .iter()
+        .map(|w| map.photon(w.index).power * w.density);
+    let irradiance = sum.fold(lightscope::engine::math::Rgb::BLACK, |a, b| a + b);
+    let expected = irradiance * (0.73 / std::f32::consts::PI);
+    assert!((query.radiance - expected).max_component().abs() < 1e-3 * expected.max_component());
+    for w in &query.photons {
+        let distance = (map.photon(w.index).p - si.p).length();
+        assert!(distance <= query.radius * 1.0001);
+    }
+    let plan = RenderPlan::new(&job.scene, false, &job.settings.layers).expect("classes");
+    let cancel = Cancel::never();
+    let pass = Pass {
+        scene: &job.scene,
+        camera: &camera,
+        plan: &plan,
+        seed: 0,
+        index: 0,
+        cancel: &cancel,
+    };
+    let (rays, gathered) = view.gather(&pass, &si);
+    assert_eq!(rays.len(), 16);
+    assert!(rays.iter().all(|r| r.d.dot(si.n_g) > 0.0));
+    assert!(gathered.mean() > 0.3 * query.radiance.mean());
 }

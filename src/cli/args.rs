@@ -164,6 +164,8 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Time from a change of camera to the first picture.
     FirstFrame(FirstFrameArgs),
+    /// Noise and bias of photon mapping, apart and without a reference.
+    NoiseBias(BenchNoiseBiasArgs),
     /// Time to build photon maps, and queries a second where eye rays land.
     Photons(BenchPhotonsArgs),
     /// Rays a second on one mesh, single-threaded.
@@ -184,6 +186,26 @@ pub struct FirstFrameArgs {
     /// Changes of camera.
     #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one, allow_negative_numbers = true)]
     pub changes: u64,
+    /// Threads; 0 is one a core.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench noise-bias`.
+#[derive(Debug, Args)]
+pub struct BenchNoiseBiasArgs {
+    /// Scene: an id or a file.
+    #[arg(long, default_value = super::scene::DEFAULT_SCENE)]
+    pub scene: String,
+    /// Parameter of photon mapping; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Independent maps, at least two.
+    #[arg(long, value_name = "N", default_value = "16", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub maps: u64,
     /// Threads; 0 is one a core.
     #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,

@@ -1,6 +1,7 @@
 //! `lightscope bench`: how fast this machine renders.
 
 mod first_frame;
+mod noise_bias;
 mod photons;
 mod rays;
 mod scenes;
@@ -12,6 +13,7 @@ use super::error::CliError;
 pub fn run(what: &Bench) -> Result<(), CliError> {
     match what {
         Bench::FirstFrame(args) => first_frame::run(args),
+        Bench::NoiseBias(args) => noise_bias::run(args),
         Bench::Photons(args) => photons::run(args),
         Bench::Rays(args) => rays::run(args),
         Bench::Scenes(args) => scenes::run(args),

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use crate::engine::integrators::{Fact, RenderStats};
-use crate::engine::photon::PhotonMaps;
+use crate::engine::integrators::{Fact, PhotonView, RenderStats};
 use crate::engine::plan::RenderPlan;
 
 /// A picture: mean radiance, row by row from the top left.
@@ -46,7 +45,7 @@ pub struct Frame {
     /// What the integrator prepared.
     pub facts: Vec<Fact>,
     /// Its photons.
-    pub photons: Option<Arc<PhotonMaps>>,
+    pub photons: Option<PhotonView>,
     /// The job is paused.
     pub paused: bool,
     /// A sentence for the user when the render stopped with an error.

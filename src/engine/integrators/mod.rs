@@ -12,12 +12,10 @@ pub mod tiled;
 
 pub use params::{ParamKind, ParamSpec, ParamValue, Params};
 pub use pass::{Cancel, Cancelled, Pass};
+pub use photon::PhotonView;
 pub use stats::{BadSample, RenderStats};
 
-use std::sync::Arc;
-
 use crate::engine::film::Film;
-use crate::engine::photon::PhotonMaps;
 use crate::engine::scene::features::SceneFeatures;
 
 /// One algorithm, prepared for one job.
@@ -46,7 +44,7 @@ pub trait Integrator: Send + Sync {
     }
 
     /// Its photons, for display.
-    fn photon_maps(&self) -> Option<Arc<PhotonMaps>> {
+    fn photons(&self) -> Option<PhotonView> {
         None
     }
 }

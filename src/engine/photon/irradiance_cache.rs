@@ -177,3 +177,85 @@ fn level_of(reach: f32) -> i32 {
 fn cell_of(p: Vec3A, level: i32) -> IVec3 {
     (p * (-level as f32).exp2()).floor().as_ivec3()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTINGS: CacheSettings = CacheSettings {
+        error: 0.25,
+        min_radius: 0.04,
+        max_radius: 2.0,
+    };
+
+    fn record(p: Vec3A, n: Vec3A, radius: f32, value: f32) -> CacheRecord {
+        CacheRecord {
+            p,
+            n,
+            radius,
+            values: vec![(ClassId::EMPTY, Rgb::splat(value))],
+        }
+    }
+
+    /// Along a line towards a corner the harmonic distance falls to 0.
+    #[test]
+    fn a_corner_has_a_bounded_number_of_records() {
+        let mut cache = IrradianceCache::new(SETTINGS);
+        let points = 100_000;
+        for i in 0..points {
+            let p = Vec3A::X * (i as f32 / points as f32);
+            if !cache.serves(p, Vec3A::Y) {
+                cache.insert(record(p, Vec3A::Y, p.x, 1.0));
+            }
+        }
+        // Two records stand at least a · the least radius apart.
+        let most = 1.0 / (SETTINGS.error * SETTINGS.min_radius) + 1.0;
+        let count = cache.records().len();
+        assert!(count as f32 <= most && count > 10, "{count} of {most}");
+        assert!(
+            cache
+                .records()
+                .iter()
+                .all(|r| r.radius >= SETTINGS.min_radius)
+        );
+    }
+
+    #[test]
+    fn means_are_weighed_by_class_and_fade_at_the_border() {
+        let mut cache = IrradianceCache::new(SETTINGS);
+        cache.insert(record(Vec3A::ZERO, Vec3A::Y, 1.0, 2.0));
+        cache.insert(record(Vec3A::X * 0.2, Vec3A::Y, 1.0, 4.0));
+        let mut values = ClassSums::new();
+        let mut at = |x: f32, n: Vec3A| {
+            let served = cache.interpolate(Vec3A::X * x, n, &mut values);
+            served.then(|| values[0].1[0])
+        };
+        assert_eq!(at(0.1, Vec3A::Y), Some(3.0));
+        let near = at(1e-6, Vec3A::Y).expect("a record");
+        assert!((near - 2.0).abs() < 1e-3);
+        // Beyond 0.25 of one record only the other is left; then none.
+        assert_eq!(at(0.3, Vec3A::Y), Some(4.0));
+        assert_eq!(at(0.5, Vec3A::Y), None);
+        assert_eq!(at(0.1, Vec3A::X), None, "another normal");
+        assert_eq!(at(-0.2, Vec3A::Y), Some(2.0));
+    }
+
+    #[test]
+    fn neighbours_clamp_each_other() {
+        let mut cache = IrradianceCache::new(SETTINGS);
+        cache.insert(record(Vec3A::ZERO, Vec3A::Y, 2.0, 1.0));
+        cache.insert(record(Vec3A::X * 0.3, Vec3A::Y, 0.1, 1.0));
+        // The first saw nothing nearer than 2; the second shows that something is.
+        assert!((cache.records()[0].radius - 0.4).abs() < 1e-6);
+        cache.insert(record(Vec3A::X * 0.1, Vec3A::Y, 2.0, 1.0));
+        assert!((cache.records()[2].radius - 0.3).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_record_before_the_surface_does_not_serve() {
+        let mut cache = IrradianceCache::new(SETTINGS);
+        cache.insert(record(Vec3A::ZERO, Vec3A::Y, 2.0, 1.0));
+        assert!(cache.serves(Vec3A::Y * 0.2, Vec3A::Y));
+        assert!(!cache.serves(Vec3A::Y * -0.2, Vec3A::Y));
+    }
+}

@@ -211,6 +211,16 @@ struct Chunk<T> {
     unit: f32,
 }
 
+impl<T> Chunk<T> {
+    fn new(unit: f32) -> Self {
+        Self {
+            photons: Vec::new(),
+            counts: MapCounts::default(),
+            unit,
+        }
+    }
+}
+
 impl<T: Record> Witness for Chunk<T> {
     fn stored(&mut self, photon: Photon, si: &SurfaceInteraction, u: f32) {
         self.counts.stored += 1;
@@ -225,37 +235,28 @@ impl<T: Record> Witness for Chunk<T> {
     }
 }
 
-/// Paths `first`…`end` of a map, each carrying `share` of the emitted power.
-fn chunk<T: Record>(
+/// Follows photon `number` of a map, or of the pilot that counts how many a map needs. Returns
+/// the number of rays.
+pub(super) fn follow(
     walks: &Walks<'_>,
-    item: (u64, u64),
-    paths: std::ops::Range<u64>,
-    numbers: Numbers,
+    settings: &MapSettings,
+    (pilot, number): (bool, u64),
     share: f32,
-    unit: f32,
-) -> Chunk<T> {
-    let mut chunk = Chunk {
-        photons: Vec::new(),
-        counts: MapCounts {
-            emitted: paths.end - paths.start,
-            ..MapCounts::default()
-        },
-        unit,
-    };
-    for path in paths {
-        let index = (item.1, path);
-        chunk.counts.rays += match numbers {
-            Numbers::Independent => {
-                let mut sampler = IndependentSampler::new(item.0, Stream::Light, index);
-                walks.follow(share, &mut sampler, &mut chunk)
-            }
-            Numbers::Sobol => {
-                let mut sampler = SobolSampler::new(item.0, Stream::Light, index);
-                walks.follow(share, &mut sampler, &mut chunk)
-            }
-        };
+    to: &mut impl Witness,
+) -> u64 {
+    let caustic = u64::from(walks.kind == MapKind::Caustic);
+    let item = (settings.index * 2 + caustic) * 2 + u64::from(pilot);
+    let index = (item, number);
+    match settings.numbers {
+        Numbers::Independent => {
+            let mut sampler = IndependentSampler::new(settings.seed, Stream::Light, index);
+            walks.follow(share, &mut sampler, to)
+        }
+        Numbers::Sobol => {
+            let mut sampler = SobolSampler::new(settings.seed, Stream::Light, index);
+            walks.follow(share, &mut sampler, to)
+        }
     }
-    chunk
 }
 
 /// Emits as many photons as it takes to store about the number wanted. How many is told by a
@@ -271,29 +272,24 @@ pub fn trace_photons<T: Record, E: Send>(
 ) -> Result<(Vec<T>, MapCounts), E> {
     let unit = power_unit(walks.scene, settings.photons);
     let wanted = settings.photons as u64;
-    let item = |pilot: u64| {
-        let kind = u64::from(walks.kind == MapKind::Caustic);
-        (settings.seed, (settings.index * 2 + kind) * 2 + pilot)
-    };
     let run = |pilot, range: std::ops::Range<u64>, end: u64, share| {
         let pieces: Result<Vec<Chunk<T>>, E> = range
             .into_par_iter()
             .map(|i| {
                 check()?;
-                let paths = i * CHUNK..((i + 1) * CHUNK).min(end);
-                Ok(chunk(
-                    walks,
-                    item(pilot),
-                    paths,
-                    settings.numbers,
-                    share,
-                    unit,
-                ))
+                let mut chunk = Chunk::new(unit);
+                for path in i * CHUNK..((i + 1) * CHUNK).min(end) {
+                    let number = (pilot, path);
+                    let rays = follow(walks, settings, number, share, &mut chunk);
+                    chunk.counts.rays += rays;
+                    chunk.counts.emitted += 1;
+                }
+                Ok(chunk)
             })
             .collect();
         pieces
     };
-    let pilot = run(1, 0..PILOT / CHUNK, PILOT, 1.0)?;
+    let pilot = run(true, 0..PILOT / CHUNK, PILOT, 1.0)?;
     let stored: u64 = pilot.iter().map(|c| c.counts.stored).sum();
     let rays: u64 = pilot.iter().map(|c| c.counts.rays).sum();
     let paths = (wanted * PILOT / stored.max(1)).clamp(1, wanted * MAX_PATHS_A_PHOTON);
@@ -311,7 +307,7 @@ pub fn trace_photons<T: Record, E: Send>(
     let mut next = 0;
     while next < chunks {
         let end = (next + ROUND).min(chunks);
-        for piece in run(0, next..end, paths, share)? {
+        for piece in run(false, next..end, paths, share)? {
             counts.add(&piece.counts);
             photons.extend_from_slice(&piece.photons);
         }

@@ -194,7 +194,7 @@ impl Renderer {
         frame.plan = Arc::clone(&self.plan);
         frame.preview = coarse.is_some() && self.previewed;
         frame.facts = self.integrator.facts();
-        frame.photons = self.integrator.photon_maps();
+        frame.photons = self.integrator.photons();
         frame.paused = false;
         frame.error = None;
     }

@@ -8,7 +8,6 @@ use crate::engine::bsdf::{Bsdf, Transport};
 use crate::engine::event::{Event, Letter};
 use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::integrators::{Pass, RenderStats};
-use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
 use crate::engine::photon::Disc;
 use crate::engine::photon::irradiance_cache::{ClassSums, add_to};
@@ -54,33 +53,6 @@ impl GatherWitness for Vec<GatherRay> {
             end: si.map(|si| si.p),
         });
     }
-}
-
-/// The rays of a gather at `si`, as many as the settings of `estimator` say, and the radiance they
-/// bring.
-pub fn gather_rays(
-    estimator: &Estimator,
-    cx: &Pass<'_>,
-    si: &SurfaceInteraction,
-    numbers: IndependentSampler,
-) -> (Vec<GatherRay>, Rgb) {
-    let mut scratch = estimator.scratch();
-    let (mut rays, mut stats) = (Vec::new(), RenderStats::default());
-    let bsdf = cx.scene.bsdf(si);
-    estimator.gather(
-        cx,
-        si,
-        &bsdf,
-        u32::MAX,
-        numbers,
-        &mut scratch,
-        &mut stats,
-        &mut rays,
-    );
-    (
-        rays,
-        scratch.sums.iter().map(|(_, radiance)| *radiance).sum(),
-    )
 }
 
 impl Estimator {

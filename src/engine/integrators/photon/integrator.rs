@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::params::{Indirect, PhotonSettings};
+use super::view::PhotonView;
 use super::walk::Estimator;
 use crate::engine::film::Film;
 use crate::engine::integrators::tiled::{SamplerKind, Tiled};
@@ -63,13 +64,8 @@ impl PhotonMapper {
         }
     }
 
-    /// The estimator of the last pass, for display.
-    pub fn estimator(&self) -> &Estimator {
-        self.tiled.estimator()
-    }
-
     /// The records of interpolated gathers, where there are some.
-    pub fn cache(&self) -> Option<&IrradianceCache> {
+    fn cache(&self) -> Option<&IrradianceCache> {
         self.cache.as_ref().map(|(_, cache)| cache.as_ref())
     }
 
@@ -250,8 +246,10 @@ impl Integrator for PhotonMapper {
         facts
     }
 
-    fn photon_maps(&self) -> Option<Arc<PhotonMaps>> {
-        self.maps.as_ref().map(|(_, maps)| Arc::clone(maps))
+    fn photons(&self) -> Option<PhotonView> {
+        self.maps
+            .is_some()
+            .then(|| PhotonView::new(self.tiled.estimator()))
     }
 }
 

@@ -13,12 +13,14 @@ mod gather;
 mod integrator;
 mod noise_bias;
 mod params;
+mod view;
 mod walk;
 
-pub use gather::{GatherRay, gather_rays};
+pub use gather::GatherRay;
 pub use integrator::PhotonMapper;
 pub use noise_bias::{NoiseBias, noise_and_bias};
 pub use params::{Indirect, PhotonSettings};
+pub use view::{PhotonQuery, PhotonView};
 
 use super::{Entry, Missing, Params};
 use crate::engine::scene::features::SceneFeatures;

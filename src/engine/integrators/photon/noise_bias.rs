@@ -117,6 +117,11 @@ impl NoiseBias {
         }
     }
 
+    /// Mean of the picture.
+    pub fn mean_radiance(&self) -> f64 {
+        mean(&self.mean)
+    }
+
     /// Root mean square of the noise over pixels and channels.
     pub fn rms_noise(&self) -> f64 {
         rms(&self.noise)
