@@ -13,10 +13,7 @@ pub fn pack(d: Vec3A, n: Vec3A) -> u16 {
     let front = d.dot(n) >= 0.0;
     let mut best = (0, f32::NEG_INFINITY);
     for (dx, dy) in (-1..=1).flat_map(|y| (-1..=1).map(move |x| (x, y))) {
-        let code = q.round() + Vec2::new(dx as f32, dy as f32);
-        if code.cmplt(Vec2::ZERO).any() || code.cmpgt(Vec2::splat(MAX)).any() {
-            continue;
-        }
+        let code = wrap(q.round() + Vec2::new(dx as f32, dy as f32));
         let code = (code.x as u16) << 8 | code.y as u16;
         let found = unpack(code);
         let side = found.dot(n);
@@ -32,6 +29,19 @@ pub fn pack(d: Vec3A, n: Vec3A) -> u16 {
         }
     }
     best.0
+}
+
+/// The code of a place beyond the border of the square, where the octahedron is folded: it goes on
+/// at the mirrored place of the same side.
+fn wrap(code: Vec2) -> Vec2 {
+    let beyond = |x: f32| !(0.0..=MAX).contains(&x);
+    let back = |x: f32| if x < 0.0 { -x } else { 2.0 * MAX - x };
+    match (beyond(code.x), beyond(code.y)) {
+        (true, false) => Vec2::new(back(code.x), MAX - code.y),
+        (false, true) => Vec2::new(MAX - code.x, back(code.y)),
+        (true, true) => Vec2::new(MAX - back(code.x), MAX - back(code.y)),
+        (false, false) => code,
+    }
 }
 
 /// The unit vector of a code.

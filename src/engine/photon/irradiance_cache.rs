@@ -111,15 +111,12 @@ impl IrradianceCache {
     pub fn insert(&mut self, mut record: CacheRecord) {
         let s = self.settings;
         record.radius = record.radius.clamp(s.min_radius, s.max_radius);
-        let mut neighbours = Vec::new();
-        self.visit_indices(record.p, |i| neighbours.push(i));
-        for &i in &neighbours {
-            let neighbour = &self.records[i as usize];
+        // All records: next to a gather, looking at them costs nothing.
+        for neighbour in &self.records {
             let reach = neighbour.radius + neighbour.p.distance(record.p);
             record.radius = record.radius.min(reach);
         }
-        for &i in &neighbours {
-            let neighbour = &mut self.records[i as usize];
+        for neighbour in &mut self.records {
             let reach = record.radius + neighbour.p.distance(record.p);
             neighbour.radius = neighbour.radius.min(reach);
         }
@@ -151,18 +148,14 @@ impl IrradianceCache {
         (rest > 0.0).then(|| rest / (error + f32::EPSILON))
     }
 
-    fn visit<'a>(&'a self, p: Vec3A, mut f: impl FnMut(&'a CacheRecord)) {
-        self.visit_indices(p, |i| f(&self.records[i as usize]));
-    }
-
     /// Every record whose sphere may hold `p`, in an order that does not depend on hashing.
-    fn visit_indices(&self, p: Vec3A, mut f: impl FnMut(u32)) {
+    fn visit<'a>(&'a self, p: Vec3A, mut f: impl FnMut(&'a CacheRecord)) {
         for &level in &self.levels {
             let middle = cell_of(p, level);
             for step in 0..27 {
                 let step = IVec3::new(step % 3, step / 3 % 3, step / 9) - IVec3::ONE;
                 if let Some(records) = self.cells.get(&(level, middle + step)) {
-                    records.iter().for_each(|&i| f(i));
+                    records.iter().for_each(|&i| f(&self.records[i as usize]));
                 }
             }
         }
