@@ -2,7 +2,7 @@
 //!
 //! In the spirit of Hachisuka, Jarosz and Jensen 2010, *A Progressive Error Estimation Framework
 //! for Photon Density Estimation*: the bias of a density estimate grows with the area A of its
-//! disc, E[x_A] = L + b·A + …. Several independent maps are read twice, over A and over A/2, by
+//! disc: the mean of x_A is L + b·A + …. Several independent maps are read twice, over A and over A/2, by
 //! the same camera samples. The spread of x_A over the maps is its noise; twice the mean of
 //! x_A − x_(A/2) is its bias, known to twice that difference's own error.
 //!
