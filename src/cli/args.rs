@@ -164,6 +164,9 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Time from a change of camera to the first picture.
     FirstFrame(FirstFrameArgs),
+    /// What a user of the window waits for: camera to picture, input to answer of the panels.
+    #[cfg(feature = "viewer")]
+    Latency(FirstFrameArgs),
     /// Noise and bias of photon mapping, apart and without a reference.
     NoiseBias(BenchNoiseBiasArgs),
     /// Time to build photon maps, and queries a second where eye rays land.
@@ -174,7 +177,7 @@ pub enum Bench {
     Scenes(BenchScenesArgs),
 }
 
-/// Arguments of `bench first-frame`.
+/// Arguments of `bench first-frame` and `bench latency`.
 #[derive(Debug, Args)]
 pub struct FirstFrameArgs {
     /// Scene: an id or a file.
