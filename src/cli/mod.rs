@@ -5,6 +5,7 @@
 
 mod args;
 mod bench;
+pub mod bench_photons;
 pub mod bench_rays;
 mod compare;
 mod error;

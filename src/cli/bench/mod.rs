@@ -3,6 +3,8 @@
 mod first_frame;
 #[cfg(feature = "viewer")]
 mod latency;
+mod noise_bias;
+mod photons;
 mod rays;
 mod scenes;
 
@@ -15,6 +17,8 @@ pub fn run(what: &Bench) -> Result<(), CliError> {
         Bench::FirstFrame(args) => first_frame::run(args),
         #[cfg(feature = "viewer")]
         Bench::Latency(args) => latency::run(args),
+        Bench::NoiseBias(args) => noise_bias::run(args),
+        Bench::Photons(args) => photons::run(args),
         Bench::Rays(args) => rays::run(args),
         Bench::Scenes(args) => scenes::run(args),
     }

@@ -14,6 +14,8 @@ pub enum Stream {
     Preparation = 3,
     /// Tests.
     Test = 4,
+    /// Gather rays: the index is drawn by the sample they belong to, or made of a record's place.
+    Gather = 5,
 }
 
 /// Uniform numbers in [0, 1) for one sample, dimension after dimension.

@@ -39,6 +39,10 @@ fn progress(ui: &mut Ui, workspace: &Workspace) {
     if frame.is_coarse() {
         let side = frame.full_size.x.div_ceil(frame.size.x.max(1));
         ui.label(format!("1 of {} pixels", side * side));
+        if frame.preview {
+            ui.strong("path-traced preview")
+                .on_hover_text("The chosen algorithm cannot keep up with a moving view.");
+        }
     } else {
         ui.label(format!("{} samples", frame.passes))
             .on_hover_text("Samples a pixel.");
