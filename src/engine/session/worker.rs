@@ -8,7 +8,7 @@ use super::frames::FramePool;
 use super::handle::{Mail, Shared};
 use super::job::RenderJob;
 use super::renderer::Renderer;
-use super::schedule::{Progress, Step, next_step, publish_now};
+use super::schedule::{self, Progress, Step, next_step, publish_now};
 use crate::engine::film::{Film, Frame};
 use crate::engine::integrators::{Cancel, Cancelled};
 
@@ -153,7 +153,8 @@ impl Worker<'_> {
             Step::Full => 1,
         };
         let cells = pixels as f64 / f64::from(divisor * divisor);
-        self.seconds_per_pixel = start.elapsed().as_secs_f64() / cells.max(1.0);
+        let measured = start.elapsed().as_secs_f64() / cells.max(1.0);
+        self.seconds_per_pixel = schedule::learn(self.seconds_per_pixel, measured);
         current.unpublished = true;
         let since = current.last_publish.elapsed().as_secs_f64();
         if coarse.is_some() || publish_now(current.renderer.passes(), since) {
