@@ -164,13 +164,16 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Time from a change of camera to the first picture.
     FirstFrame(FirstFrameArgs),
+    /// What a user of the window waits for: camera to picture, input to answer of the panels.
+    #[cfg(feature = "viewer")]
+    Latency(FirstFrameArgs),
     /// Rays a second on one mesh, single-threaded.
     Rays(BenchRaysArgs),
     /// Error against time on scenes with references, single-threaded.
     Scenes(BenchScenesArgs),
 }
 
-/// Arguments of `bench first-frame`.
+/// Arguments of `bench first-frame` and `bench latency`.
 #[derive(Debug, Args)]
 pub struct FirstFrameArgs {
     /// Scene: an id or a file.

@@ -1,6 +1,8 @@
 //! `lightscope bench`: how fast this machine renders.
 
 mod first_frame;
+#[cfg(feature = "viewer")]
+mod latency;
 mod rays;
 mod scenes;
 
@@ -11,6 +13,8 @@ use super::error::CliError;
 pub fn run(what: &Bench) -> Result<(), CliError> {
     match what {
         Bench::FirstFrame(args) => first_frame::run(args),
+        #[cfg(feature = "viewer")]
+        Bench::Latency(args) => latency::run(args),
         Bench::Rays(args) => rays::run(args),
         Bench::Scenes(args) => scenes::run(args),
     }

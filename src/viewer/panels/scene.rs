@@ -35,7 +35,9 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             ui.label(RichText::new(format!("Note: {warning}")).weak());
         }
     }
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
+        widgets::command(ui, workspace, Command::Open);
+        widgets::command(ui, workspace, Command::Gallery);
         let paused = workspace.paused;
         let label = if paused { "Go on" } else { "Pause" };
         widgets::command_labelled(ui, workspace, Command::Pause, label, true);

@@ -52,6 +52,10 @@ fn progress(ui: &mut Ui, workspace: &Workspace) {
             .on_hover_text("Estimated root mean square error over the mean of the picture.");
     }
     ui.weak(format!("{} × {}", frame.full_size.x, frame.full_size.y));
+    if workspace.placement.zoom > 1.0 {
+        ui.label(format!("magnified {:.1} ×", workspace.placement.zoom))
+            .on_hover_text(binding(Command::ZoomOut).tooltip());
+    }
 }
 
 fn warnings(ui: &mut Ui, workspace: &Workspace) {
