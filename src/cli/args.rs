@@ -261,7 +261,7 @@ pub struct BenchScenesArgs {
     /// Folders with scene.json and ref.exr.
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
-    /// Seconds a scene.
+    /// Seconds of process time a scene.
     #[arg(long, value_name = "T", default_value = "10", value_parser = positive, allow_negative_numbers = true)]
     pub seconds: f64,
     /// Algorithm.

@@ -1,4 +1,5 @@
-//! Error against time on scenes with references, on one thread.
+//! Error against time on scenes with references, on one thread. Times are process time, so that
+//! other work on the machine does not count.
 
 use std::path::Path;
 
@@ -39,7 +40,7 @@ pub fn run(args: &BenchScenesArgs) -> Result<(), CliError> {
     let pool = render::thread_pool(1)?;
     let mut rows = Vec::new();
     for folder in &args.folders {
-        eprintln!("{}: {} s", folder.display(), args.seconds);
+        eprintln!("{}: {} s of process time", folder.display(), args.seconds);
         rows.push(pool.install(|| measure(folder, &settings, args.seconds))?);
     }
     if args.json {
@@ -64,7 +65,7 @@ fn measure(folder: &Path, settings: &Settings, seconds: f64) -> Result<Row, CliE
     };
     let plan = scene::plan(&job)?;
     let mut renderer = Renderer::with_plan(&job, plan, clock);
-    while renderer.clock().wall() < seconds {
+    while renderer.clock().cpu() < seconds {
         // Nobody cancels this render.
         let _ = renderer.render_pass(&Cancel::never());
     }
@@ -85,8 +86,8 @@ fn measure(folder: &Path, settings: &Settings, seconds: f64) -> Result<Row, CliE
         t_wall: frame.t_wall,
         t_cpu: frame.t_cpu,
         spp: frame.passes,
-        mrays_per_second: frame.stats.rays as f64 / frame.t_wall * 1e-6,
-        samples_per_second: frame.stats.samples as f64 / frame.t_wall,
+        mrays_per_second: frame.stats.rays as f64 / frame.t_cpu * 1e-6,
+        samples_per_second: frame.stats.samples as f64 / frame.t_cpu,
         relmse: metrics.relmse,
         k: 1000.0 * metrics.relmse * frame.t_cpu,
     })

@@ -8,6 +8,8 @@ const PLANNED_SHARE: f64 = 0.4;
 /// A pass at full resolution that takes no longer than this needs no coarser forerunner but the
 /// first.
 const PATIENCE_SECONDS: f64 = 0.15;
+/// What a slow pass still counts after each later one.
+const MEMORY: f64 = 0.9;
 /// Coarsest picture: one sample for a square of 32 pixels.
 const MAX_DIVISOR: u32 = 32;
 /// Shortest time between two frames of a converging picture, in seconds.
@@ -40,6 +42,13 @@ pub enum Step {
     },
     /// One more pass at full resolution.
     Full,
+}
+
+/// The seconds per pixel to plan with, after `measured` followed on `known`. A machine that does
+/// other work beside has slow spells: the slowest pass of the last few is planned for, as a late
+/// frame is felt and a coarse one hardly seen.
+pub fn learn(known: f64, measured: f64) -> f64 {
+    measured.max(MEMORY * known)
 }
 
 /// Chooses the next step.
@@ -135,6 +144,18 @@ mod tests {
             ..progress(2e-6)
         };
         assert_eq!(next_step(&p), Step::Full);
+    }
+
+    #[test]
+    fn slow_spells_are_remembered_for_some_frames() {
+        let mut known = 1e-6;
+        known = learn(known, 4e-6);
+        assert_eq!(known, 4e-6);
+        let frames = (0..).find(|_| {
+            known = learn(known, 1e-6);
+            known == 1e-6
+        });
+        assert!((5..30).contains(&frames.expect("it is forgotten")));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::frames::FramePool;
 use super::handle::{Mail, Shared};
 use super::job::RenderJob;
 use super::renderer::Renderer;
-use super::schedule::{Progress, Step, next_step, publish_now};
+use super::schedule::{self, Progress, Step, next_step, publish_now};
 use crate::engine::film::{Film, Frame};
 use crate::engine::integrators::{Cancel, Cancelled};
 
@@ -156,7 +156,8 @@ impl Worker<'_> {
         // Coarse pictures are planned by this figure: where previews stand in for them, full
         // passes say nothing about it.
         if coarse.is_some() || !current.renderer.previewed() {
-            self.seconds_per_pixel = start.elapsed().as_secs_f64() / cells.max(1.0);
+            let measured = start.elapsed().as_secs_f64() / cells.max(1.0);
+            self.seconds_per_pixel = schedule::learn(self.seconds_per_pixel, measured);
         }
         current.unpublished = true;
         let since = current.last_publish.elapsed().as_secs_f64();
