@@ -2,69 +2,11 @@
 
 mod support;
 
-use lightscope::engine::film::Frame;
-use lightscope::engine::io::image;
-use support::agreement::{Blocks, compare, mean};
-use support::render::{job, load, reference_dir, render};
-
-const LAYERS: [&str; 5] = ["whole", "direct", "specular", "caustic", "indirect"];
-/// Independent runs behind each standard error.
-const RUNS: u64 = 16;
-
-/// A reference layer and its standard error.
-fn reference_layer(scene: &str, layer: &str, width: usize) -> Blocks {
-    let stem = if layer == "whole" { "ref" } else { layer };
-    let read = |name: String| {
-        let path = reference_dir(scene).join(name);
-        image::read(&path, image::Encoding::Linear).unwrap_or_else(|e| panic!("{e}"))
-    };
-    let (pixels, se) = (read(format!("{stem}.exr")), read(format!("{stem}_se.exr")));
-    Blocks::from_reference(&pixels.pixels, &se.pixels, width)
-}
-
-/// Sixteen runs of `passes` passes each.
-fn runs(scene: &str, integrator: &str, set: &[(&str, &str)], passes: u64) -> (Vec<Frame>, usize) {
-    let scene = load(&reference_dir(scene).join("scene.json"));
-    let mut job = job(&scene, integrator, set);
-    let width = job.size.x as usize;
-    let frames = (0..RUNS).map(|seed| {
-        job.settings.seed = seed;
-        let frame = render(&job, passes);
-        assert_eq!(frame.stats.non_finite, 0);
-        frame
-    });
-    (frames.collect(), width)
-}
-
-fn layer_blocks(frames: &[Frame], layer: usize, width: usize) -> Blocks {
-    let runs: Vec<&[[f32; 3]]> = frames
-        .iter()
-        .map(|f| f.layers[layer].pixels.as_slice())
-        .collect();
-    Blocks::from_runs(&runs, width)
-}
+use support::agreement::compare;
+use support::reference::{LAYERS, assert_agrees_with_reference, layer_blocks, runs, whole_mean};
 
 fn agrees_with_reference(scene: &str, set: &[(&str, &str)], passes: u64) {
-    let (frames, width) = runs(scene, "path", set, passes);
-    let whole = frames
-        .iter()
-        .map(|f| mean(&f.layers[0].pixels))
-        .sum::<f64>()
-        / RUNS as f64;
-    let mut complaints = Vec::new();
-    for (index, layer) in LAYERS.iter().enumerate() {
-        assert_eq!(frames[0].layers[index].label, *layer);
-        let ours = layer_blocks(&frames, index, width);
-        let reference = reference_layer(scene, layer, width);
-        let verdict = compare(layer, &ours, &reference, whole, LAYERS.len());
-        println!(
-            "{scene} {layer}: worst block {:.1} standard errors; would catch a bias of {:.2} %",
-            verdict.worst,
-            100.0 * verdict.sensitivity
-        );
-        complaints.extend(verdict.complaints);
-    }
-    assert!(complaints.is_empty(), "{scene}:\n{}", complaints.join("\n"));
+    assert_agrees_with_reference(scene, "path", set, passes, &LAYERS);
 }
 
 #[test]
@@ -111,7 +53,7 @@ fn path_agrees_on_furnace() {
 #[test]
 fn modes_and_samplers_agree_with_each_other() {
     let (base, width) = runs("cornell-glass", "path", &[], 64);
-    let whole = base.iter().map(|f| mean(&f.layers[0].pixels)).sum::<f64>() / RUNS as f64;
+    let whole = whole_mean(&base);
     let variants: [(&[(&str, &str)], u64); 4] = [
         (&[("mode", "hits")], 256),
         (&[("mode", "kajiya")], 64),

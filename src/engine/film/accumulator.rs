@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::frame::FrameLayer;
 use super::pass_buffer::{PassBuffer, PassTile};
+use super::splats::SplatBuffer;
 use super::tiles::{TILE_PIXELS, Tiles};
 
 type Plane = Box<[[f64; 3]; TILE_PIXELS]>;
@@ -16,6 +17,8 @@ pub struct Film {
     planned: u32,
     data: Vec<FilmTile>,
     passes: u64,
+    /// What the means are multiplied by.
+    scale: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -57,6 +60,16 @@ impl FilmTile {
         }
     }
 
+    /// Adds the sums of splats; they belong to the pass that is added with them.
+    fn add_splats(&mut self, splats: &[[[f64; 3]; TILE_PIXELS]], even: bool) {
+        for (sums, values) in self.sums.iter_mut().zip(splats) {
+            add_sums(sums, values);
+        }
+        if even {
+            add_sums(&mut self.even, &splats[0]);
+        }
+    }
+
     /// Finite samples of the pixel at `place` among `passes` passes, of the even and odd ones.
     fn counts(&self, place: usize, passes: u64) -> [u64; 2] {
         let rejected = self.rejected.as_ref().map_or([0; 2], |r| r[place]);
@@ -75,6 +88,14 @@ fn add_plane(sums: &mut [[f64; 3]; TILE_PIXELS], values: &[[f32; 3]; TILE_PIXELS
     }
 }
 
+fn add_sums(sums: &mut [[f64; 3]; TILE_PIXELS], values: &[[f64; 3]; TILE_PIXELS]) {
+    for (s, v) in sums.iter_mut().zip(values) {
+        for c in 0..3 {
+            s[c] += v[c];
+        }
+    }
+}
+
 impl Film {
     /// An empty film of `size` pixels for the whole and the layers of the bit mask `planned`.
     pub fn new(size: UVec2, planned: u32) -> Self {
@@ -85,6 +106,7 @@ impl Film {
             planned,
             data: vec![FilmTile::new(planes); tiles.len()],
             passes: 0,
+            scale: 1.0,
         }
     }
 
@@ -115,6 +137,26 @@ impl Film {
         self.passes += 1;
     }
 
+    /// Adds a completed pass of splats, and of camera samples if it had any. The splats of a pass
+    /// add up to one more sample of every pixel.
+    pub fn commit_splats(&mut self, samples: Option<&PassBuffer>, splats: &SplatBuffer) {
+        debug_assert!(splats.fits(self.size(), self.planned));
+        let even = self.passes.is_multiple_of(2);
+        self.data.par_iter_mut().enumerate().for_each(|(i, film)| {
+            if let Some(samples) = samples {
+                film.add(&samples.data()[i], even);
+            }
+            film.add_splats(splats.tile(i), even);
+        });
+        self.passes += 1;
+    }
+
+    /// Sets what all means are multiplied by: for sums whose normalisation is itself estimated,
+    /// and becomes better known with every pass.
+    pub fn set_scale(&mut self, scale: f64) {
+        self.scale = scale;
+    }
+
     /// The mean radiance of plane `plane` (0 the whole, then the planned layers), row by row from
     /// the top. A pixel without any finite sample is NaN, for the display to mark.
     fn resolve_plane(&self, plane: usize, out: &mut Vec<[f32; 3]>) {
@@ -134,7 +176,7 @@ impl Film {
                     let tile = &self.data[t];
                     for (place, pixel) in self.tiles.pixels(t) {
                         let [even, odd] = tile.counts(place, self.passes);
-                        let scale = 1.0 / (even + odd) as f64;
+                        let scale = self.scale / (even + odd) as f64;
                         let sum = tile.sums[plane][place];
                         rows[((pixel.y - top) * size.x + pixel.x) as usize] =
                             sum.map(|s| (s * scale) as f32);

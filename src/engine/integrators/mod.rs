@@ -3,6 +3,9 @@
 //!
 //! Adding one is a file with an [`Entry`] and a line in [`REGISTRY`].
 
+pub mod bdpt;
+pub mod bidirectional;
+pub mod light;
 pub mod params;
 pub mod pass;
 pub mod path;
@@ -51,7 +54,16 @@ pub struct Missing {
 }
 
 /// Every integrator, in the order of the window's list.
-pub const REGISTRY: &[Entry] = &[path::ENTRY];
+pub const REGISTRY: &[Entry] = &[path::ENTRY, light::ENTRY, bdpt::ENTRY];
+
+/// The parameter that [`tiled::SamplerKind`] reads.
+const SAMPLER_PARAM: ParamSpec = ParamSpec {
+    name: "sampler",
+    kind: ParamKind::Choice(&["sobol", "independent"]),
+    default: "sobol",
+    unit: "",
+    doc: "Owen-scrambled Sobol points, or independent random numbers.",
+};
 
 /// The integrator of that id.
 pub fn find(id: &str) -> Option<&'static Entry> {

@@ -30,6 +30,14 @@ pub struct RenderStats {
     pub below_horizon: u64,
 }
 
+impl RenderStats {
+    /// Counts a sample that was not finite.
+    pub fn add_bad(&mut self, sample: BadSample) {
+        self.non_finite += 1;
+        self.first_non_finite = self.first_non_finite.or(Some(sample));
+    }
+}
+
 impl AddAssign for RenderStats {
     fn add_assign(&mut self, o: Self) {
         self.rays += o.rays;

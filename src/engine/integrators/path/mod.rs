@@ -34,13 +34,7 @@ const PARAMS: &[ParamSpec] = &[
         doc: "How lights are found: by shadow rays and hits weighed together, by a shadow ray to \
               every light, or by hits alone.",
     },
-    ParamSpec {
-        name: "sampler",
-        kind: ParamKind::Choice(&["sobol", "independent"]),
-        default: "sobol",
-        unit: "",
-        doc: "Owen-scrambled Sobol points, or independent random numbers.",
-    },
+    super::SAMPLER_PARAM,
     ParamSpec {
         name: "roulette",
         kind: ParamKind::Integer(0, 10_000_000),
@@ -71,10 +65,7 @@ fn build(params: &Params) -> Box<dyn Integrator> {
         "kajiya" => Mode::Kajiya,
         _ => Mode::Mis,
     };
-    let sampler = match params.choice("sampler") {
-        "independent" => SamplerKind::Independent,
-        _ => SamplerKind::Sobol,
-    };
+    let sampler = SamplerKind::of(params);
     let roulette = u32::try_from(params.integer("roulette")).unwrap_or(u32::MAX);
     Box::new(Tiled::new(PathTracer { mode, roulette }, sampler))
 }

@@ -1,0 +1,102 @@
+//! Comparison with the reference images.
+
+use lightscope::engine::film::Frame;
+use lightscope::engine::io::image;
+use lightscope::engine::session::RenderJob;
+
+use super::agreement::{Blocks, compare, mean};
+use super::render::{job, load, reference_dir, render};
+
+/// The layers of a reference.
+pub const LAYERS: [&str; 5] = ["whole", "direct", "specular", "caustic", "indirect"];
+/// Independent runs behind each standard error.
+pub const RUNS: u64 = 16;
+
+/// A reference layer and its standard error.
+pub fn reference_layer(scene: &str, layer: &str, width: usize) -> Blocks {
+    let stem = if layer == "whole" { "ref" } else { layer };
+    let (pixels, se) = (
+        read_layer(scene, stem),
+        read_layer(scene, &format!("{stem}_se")),
+    );
+    Blocks::from_reference(&pixels, &se, width)
+}
+
+fn read_layer(scene: &str, stem: &str) -> Vec<[f32; 3]> {
+    let path = reference_dir(scene).join(format!("{stem}.exr"));
+    let image = image::read(&path, image::Encoding::Linear).unwrap_or_else(|e| panic!("{e}"));
+    image.pixels
+}
+
+/// Sixteen runs of `passes` passes each on a reference scene.
+pub fn runs(
+    scene: &str,
+    integrator: &str,
+    set: &[(&str, &str)],
+    passes: u64,
+) -> (Vec<Frame>, usize) {
+    let scene = load(&reference_dir(scene).join("scene.json"));
+    let job = job(&scene, integrator, set);
+    let width = job.size.x as usize;
+    (runs_of(job, passes), width)
+}
+
+/// Sixteen runs of `passes` passes each.
+pub fn runs_of(mut job: RenderJob, passes: u64) -> Vec<Frame> {
+    let frames = (0..RUNS).map(|seed| {
+        job.settings.seed = seed;
+        let frame = render(&job, passes);
+        assert_eq!(frame.stats.non_finite, 0);
+        frame
+    });
+    frames.collect()
+}
+
+/// Block means of one layer over `frames`.
+pub fn layer_blocks(frames: &[Frame], layer: usize, width: usize) -> Blocks {
+    let runs: Vec<&[[f32; 3]]> = frames
+        .iter()
+        .map(|f| f.layers[layer].pixels.as_slice())
+        .collect();
+    Blocks::from_runs(&runs, width)
+}
+
+/// Mean of the whole over `frames`.
+pub fn whole_mean(frames: &[Frame]) -> f64 {
+    let sum: f64 = frames.iter().map(|f| mean(&f.layers[0].pixels)).sum();
+    sum / frames.len() as f64
+}
+
+/// Fails unless the layers `layers` of sixteen runs agree with the reference.
+pub fn assert_agrees_with_reference(
+    scene: &str,
+    integrator: &str,
+    set: &[(&str, &str)],
+    passes: u64,
+    layers: &[&str],
+) {
+    let (frames, width) = runs(scene, integrator, set, passes);
+    let whole = mean(&read_layer(scene, "ref"));
+    let mut complaints = Vec::new();
+    for (index, layer) in LAYERS.iter().enumerate() {
+        assert_eq!(frames[0].layers[index].label, *layer);
+        if !layers.contains(layer) {
+            continue;
+        }
+        let ours = layer_blocks(&frames, index, width);
+        let reference = reference_layer(scene, layer, width);
+        let verdict = compare(layer, &ours, &reference, whole, LAYERS.len());
+        println!(
+            "{integrator} {scene} {layer}: worst block {:.1} standard errors; would catch a bias \
+             of {:.2} %",
+            verdict.worst,
+            100.0 * verdict.sensitivity
+        );
+        complaints.extend(verdict.complaints);
+    }
+    assert!(
+        complaints.is_empty(),
+        "{integrator} {scene}:\n{}",
+        complaints.join("\n")
+    );
+}
