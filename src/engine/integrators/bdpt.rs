@@ -108,9 +108,15 @@ impl Bidirectional {
             _ => Heuristic::Power,
         };
         let strategies = params.strategies("strategies").with(heuristic);
+        let roulette = usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX);
+        Self::with(strategies, roulette)
+    }
+
+    /// Only the strategies that are on; walks may end by roulette after `roulette` events.
+    pub(super) fn with(strategies: Strategies, roulette: usize) -> Self {
         Self {
             strategies,
-            roulette: usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX),
+            roulette,
         }
     }
 
@@ -133,7 +139,11 @@ impl Bidirectional {
         let (eye, light) = (&mut work.eye, &mut work.light);
         let ray = cx.camera.generate_ray(film, lens);
         let escape = walker.from_lens(ray, CAMERA_DIMENSIONS, eye_sampler, eye, stats);
-        let start = walker.from_light(light_sampler, light, stats);
+        let start = if cx.plan.shadow_rays && self.strategies.walk_from_lights() {
+            walker.from_light(light_sampler, light, stats)
+        } else {
+            None
+        };
         let mut connector = Connector {
             cx,
             strategies: &self.strategies,

@@ -9,6 +9,7 @@ pub mod light;
 pub mod params;
 pub mod pass;
 pub mod path;
+pub mod pssmlt;
 pub mod stats;
 pub mod tiled;
 
@@ -54,7 +55,7 @@ pub struct Missing {
 }
 
 /// Every integrator, in the order of the window's list.
-pub const REGISTRY: &[Entry] = &[path::ENTRY, light::ENTRY, bdpt::ENTRY];
+pub const REGISTRY: &[Entry] = &[path::ENTRY, light::ENTRY, bdpt::ENTRY, pssmlt::ENTRY];
 
 /// The parameter that [`tiled::SamplerKind`] reads.
 const SAMPLER_PARAM: ParamSpec = ParamSpec {

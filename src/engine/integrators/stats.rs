@@ -28,6 +28,10 @@ pub struct RenderStats {
     pub cut_paths: u64,
     /// Microfacet samples below the horizon: no error, they carry no light.
     pub below_horizon: u64,
+    /// Proposals of Markov chains.
+    pub mutations: u64,
+    /// Those that were accepted.
+    pub accepted: u64,
 }
 
 impl RenderStats {
@@ -46,5 +50,7 @@ impl AddAssign for RenderStats {
         self.first_non_finite = self.first_non_finite.or(o.first_non_finite);
         self.cut_paths += o.cut_paths;
         self.below_horizon += o.below_horizon;
+        self.mutations += o.mutations;
+        self.accepted += o.accepted;
     }
 }

@@ -14,6 +14,10 @@ pub enum Stream {
     Preparation = 3,
     /// Tests.
     Test = 4,
+    /// Mutations of Markov chains: the index is a chain and a step.
+    Chain = 6,
+    /// Independent samples that chains start from and their normalisation is estimated by.
+    Bootstrap = 7,
 }
 
 /// Uniform numbers in [0, 1) for one sample, dimension after dimension.

@@ -17,6 +17,9 @@ mod strategies;
 mod subpath;
 mod weight;
 
+#[cfg(test)]
+mod tests;
+
 pub use connect::{Connector, Sink, Technique};
 pub use ends::LightEnd;
 pub use strategies::{Heuristic, Strategies};

@@ -54,6 +54,21 @@ impl Strategies {
         strategies
     }
 
+    /// Those of path tracing: hits and shadow rays, s ≤ 1, but for light joined to the lens.
+    pub fn eye_alone(heuristic: Heuristic) -> Self {
+        let mut strategies = Self::all(heuristic);
+        strategies.set((None, None), false);
+        strategies.set((Some(0), None), true);
+        strategies.set((Some(1), None), true);
+        strategies.set((Some(1), Some(1)), false);
+        strategies
+    }
+
+    /// Whether any of them needs a walk from a light.
+    pub fn walk_from_lights(&self) -> bool {
+        self.on[1] & (1 << 1) != 0 || self.on[2..].iter().any(|row| *row != 0)
+    }
+
     /// The strategies of the same words with the heuristic `heuristic`.
     #[must_use]
     pub fn with(self, heuristic: Heuristic) -> Self {

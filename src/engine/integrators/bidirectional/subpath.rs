@@ -37,6 +37,8 @@ pub struct Vertex {
     /// Class of the events between this vertex and the end the walk began at, its own excluded
     /// (CONTRACT rule 4).
     pub class: ClassId,
+    /// The event drawn there to go on. It restricts nothing that is evaluated there.
+    pub event: Option<Event>,
 }
 
 /// A subpath. Vertex 0, the lens or the light, has densities only.
@@ -266,6 +268,7 @@ impl Walker<'_> {
                 si,
                 throughput: flight.throughput,
                 class: flight.class,
+                event: None,
             });
             if self
                 .cx
@@ -345,6 +348,7 @@ impl Walker<'_> {
         path: &mut Subpath,
     ) {
         let last = path.vertices.len();
+        path.vertices[last - 1].event = Some(sample.event);
         path.densities[last].connectible = !sample.event.is_delta();
         path.densities[last - 1].other = match origin {
             _ if last >= 2 => area_density(backward, si.p, &path.vertices[last - 2].si),
