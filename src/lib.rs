@@ -4,3 +4,6 @@
 
 pub mod cli;
 pub mod engine;
+mod picture;
+#[cfg(feature = "viewer")]
+pub mod viewer;

@@ -181,7 +181,7 @@ fn modules_use_only_what_stands_left_of_them() {
         })
     };
     fn special(path: &str) -> bool {
-        ["scene/desc", "scene/texture"].iter().any(|s| path == *s)
+        ["scene/desc", "scene/texture"].contains(&path)
     }
     let mut wrong = Vec::new();
     for source in sources().iter().filter(|s| in_engine(&s.path)) {

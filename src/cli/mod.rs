@@ -23,6 +23,9 @@ use clap::{CommandFactory, Parser};
 use args::{Cli, Command};
 use error::CliError;
 
+#[cfg(feature = "viewer")]
+use crate::viewer::source::SceneSource;
+
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -78,9 +81,7 @@ fn window(_scene: Option<&str>) -> Result<(), CliError> {
 
 /// Opens the window.
 #[cfg(feature = "viewer")]
-fn window(_scene: Option<&str>) -> Result<(), CliError> {
-    Err(CliError::Failed(
-        "the window is not built in; `lightscope render SCENE -o OUT.png` renders without one"
-            .to_owned(),
-    ))
+fn window(scene: Option<&str>) -> Result<(), CliError> {
+    let source = SceneSource::named(scene.unwrap_or(scene::DEFAULT_SCENE));
+    crate::viewer::run(source).map_err(|error| CliError::Failed(error.to_string()))
 }

@@ -116,7 +116,7 @@ impl Camera {
             },
             half: Vec2::new((f64::from(self.half.y) * aspect) as f32, self.half.y),
             size: size.as_vec2(),
-            ..self.clone()
+            ..*self
         }
     }
 

@@ -10,7 +10,7 @@ use crate::engine::path::{ClassId, Expression, ExpressionError, PathClasses};
 use crate::engine::scene::{Scene, SceneFeatures};
 
 /// Settings of a render that are no integrator's own.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LayerSettings {
     /// Typed expressions, a layer each after the four components.
     pub expressions: Vec<Expression>,

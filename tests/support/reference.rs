@@ -100,3 +100,22 @@ pub fn assert_agrees_with_reference(
         complaints.join("\n")
     );
 }
+
+/// Fails unless the layers of each pair, one of `a` and one of `b`, agree.
+pub fn assert_agree(label: &str, a: &[Frame], b: &[Frame], pairs: &[(usize, usize)]) {
+    let width = a[0].size.x as usize;
+    let whole = whole_mean(b);
+    let mut complaints = Vec::new();
+    for &(i, j) in pairs {
+        let (x, y) = (layer_blocks(a, i, width), layer_blocks(b, j, width));
+        let name = format!("{label} {}", a[0].layers[i].label);
+        let verdict = compare(&name, &x, &y, whole, pairs.len());
+        println!(
+            "{name}: worst block {:.1} standard errors; would catch a bias of {:.2} %",
+            verdict.worst,
+            100.0 * verdict.sensitivity
+        );
+        complaints.extend(verdict.complaints);
+    }
+    assert!(complaints.is_empty(), "{label}:\n{}", complaints.join("\n"));
+}

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use glam::UVec2;
 
-use super::exr_file;
 use super::output::{Format, folder};
-use super::{Layer, Picture, WHOLE, labels};
+use super::{Layer, Picture, WHOLE};
 use crate::cli::error::CliError;
 use crate::engine::io::image::{self, Encoding};
+use crate::picture::{exr_file, labels};
 
 /// Reads a picture file.
 pub fn read(path: &Path) -> Result<Picture, CliError> {

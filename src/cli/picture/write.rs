@@ -5,7 +5,6 @@ use std::io::Cursor;
 use image::codecs::hdr::HdrEncoder;
 use image::{ImageFormat, Rgb, RgbImage};
 
-use super::exr_file;
 use super::output::{Format, Output};
 use crate::cli::error::CliError;
 use crate::cli::render::RenderOptions;
@@ -13,6 +12,7 @@ use crate::cli::scene::parameter_text;
 use crate::engine::film::Frame;
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
 use crate::engine::io::atomic;
+use crate::picture::exr_file;
 
 /// What a file says about its origin.
 pub struct Attributes(Vec<(String, String)>);

@@ -21,34 +21,38 @@ pub struct Film {
     scale: f64,
 }
 
-#[derive(Clone, Debug)]
+/// Invariant: what planes hold counts only once the film has a pass. The first one makes them
+/// (a film that only previews stand in for costs nothing) or writes over what is there (a film
+/// that is used again costs no more).
+#[derive(Clone, Debug, Default)]
 struct FilmTile {
-    /// Plane 0 is the whole, then the planned layers in ascending order.
-    sums: Vec<Plane>,
-    /// The whole over the even passes alone: they use a scramble of their own, so the two halves
-    /// are independent estimates and their difference measures the error (also of Sobol points,
-    /// whose samples within one scramble are not independent).
-    even: Plane,
+    /// Plane 0 is the whole, then the planned layers in ascending order. The last plane is the
+    /// whole over the even passes alone: they use a scramble of their own, so the two halves are
+    /// independent estimates and their difference measures the error (also of Sobol points, whose
+    /// samples within one scramble are not independent).
+    planes: Vec<Plane>,
     /// Samples that were not finite, a pixel (even and odd passes).
     rejected: Option<Box<[[u32; 2]; TILE_PIXELS]>>,
 }
 
 impl FilmTile {
-    fn new(planes: usize) -> Self {
-        let zero: Plane = Box::new([[0.0; 3]; TILE_PIXELS]);
-        Self {
-            sums: vec![zero.clone(); planes],
-            even: zero,
-            rejected: None,
+    /// Adds pass number `index`.
+    fn add(&mut self, pass: &PassTile, index: u64) {
+        let planes = pass.planes() + 1;
+        if index == 0 {
+            self.planes
+                .resize_with(planes, || Box::new([[0.0; 3]; TILE_PIXELS]));
+            self.rejected = None;
         }
-    }
-
-    fn add(&mut self, pass: &PassTile, even: bool) {
-        for (p, sums) in self.sums.iter_mut().enumerate() {
-            add_plane(sums, pass.plane(p));
-        }
-        if even {
-            add_plane(&mut self.even, pass.plane(0));
+        let source = |p: usize| if p + 1 == planes { 0 } else { p };
+        let even = index.is_multiple_of(2);
+        for (p, sums) in self.planes.iter_mut().enumerate() {
+            let values = pass.plane(source(p));
+            match index {
+                0 => set_plane(sums, values),
+                _ if even || p + 1 < planes => add_plane(sums, values),
+                _ => {}
+            }
         }
         let mut mask = pass.rejected;
         while mask != 0 {
@@ -60,13 +64,20 @@ impl FilmTile {
         }
     }
 
-    /// Adds the sums of splats; they belong to the pass that is added with them.
-    fn add_splats(&mut self, splats: &[[[f64; 3]; TILE_PIXELS]], even: bool) {
-        for (sums, values) in self.sums.iter_mut().zip(splats) {
+    /// Adds the sums of splats of pass number `index`. They begin the pass, or follow its samples.
+    fn add_splats(&mut self, splats: &[[[f64; 3]; TILE_PIXELS]], index: u64, begin: bool) {
+        let planes = splats.len() + 1;
+        if begin && index == 0 {
+            self.planes.clear();
+            self.planes
+                .resize_with(planes, || Box::new([[0.0; 3]; TILE_PIXELS]));
+            self.rejected = None;
+        }
+        for (sums, values) in self.planes.iter_mut().zip(splats) {
             add_sums(sums, values);
         }
-        if even {
-            add_sums(&mut self.even, &splats[0]);
+        if index.is_multiple_of(2) {
+            add_sums(&mut self.planes[planes - 1], &splats[0]);
         }
     }
 
@@ -77,6 +88,12 @@ impl FilmTile {
             passes.div_ceil(2) - u64::from(rejected[0]),
             passes / 2 - u64::from(rejected[1]),
         ]
+    }
+}
+
+fn set_plane(sums: &mut [[f64; 3]; TILE_PIXELS], values: &[[f32; 3]; TILE_PIXELS]) {
+    for (s, v) in sums.iter_mut().zip(values) {
+        *s = v.map(f64::from);
     }
 }
 
@@ -100,14 +117,21 @@ impl Film {
     /// An empty film of `size` pixels for the whole and the layers of the bit mask `planned`.
     pub fn new(size: UVec2, planned: u32) -> Self {
         let tiles = Tiles::new(size);
-        let planes = 1 + planned.count_ones() as usize;
         Self {
             tiles,
             planned,
-            data: vec![FilmTile::new(planes); tiles.len()],
+            data: vec![FilmTile::default(); tiles.len()],
             passes: 0,
             scale: 1.0,
         }
+    }
+
+    /// This film without its passes, if it has that size and those layers. Its memory is kept:
+    /// returning and asking for a hundred megabytes takes longer than a coarse frame.
+    pub fn reuse(mut self, size: UVec2, planned: u32) -> Option<Self> {
+        self.passes = 0;
+        self.scale = 1.0;
+        (self.size() == size && self.planned == planned).then_some(self)
     }
 
     /// Size in pixels.
@@ -129,11 +153,11 @@ impl Film {
     /// Adds a completed pass.
     pub fn commit(&mut self, pass: &PassBuffer) {
         debug_assert!(pass.tiles() == self.tiles && pass.planned() == self.planned);
-        let even = self.passes.is_multiple_of(2);
+        let index = self.passes;
         self.data
             .par_iter_mut()
             .zip(pass.data())
-            .for_each(|(film, pass)| film.add(pass, even));
+            .for_each(|(film, pass)| film.add(pass, index));
         self.passes += 1;
     }
 
@@ -141,12 +165,12 @@ impl Film {
     /// add up to one more sample of every pixel.
     pub fn commit_splats(&mut self, samples: Option<&PassBuffer>, splats: &SplatBuffer) {
         debug_assert!(splats.fits(self.size(), self.planned));
-        let even = self.passes.is_multiple_of(2);
+        let index = self.passes;
         self.data.par_iter_mut().enumerate().for_each(|(i, film)| {
             if let Some(samples) = samples {
-                film.add(&samples.data()[i], even);
+                film.add(&samples.data()[i], index);
             }
-            film.add_splats(splats.tile(i), even);
+            film.add_splats(splats.tile(i), index, samples.is_none());
         });
         self.passes += 1;
     }
@@ -177,7 +201,7 @@ impl Film {
                     for (place, pixel) in self.tiles.pixels(t) {
                         let [even, odd] = tile.counts(place, self.passes);
                         let scale = self.scale / (even + odd) as f64;
-                        let sum = tile.sums[plane][place];
+                        let sum = tile.planes[plane][place];
                         rows[((pixel.y - top) * size.x + pixel.x) as usize] =
                             sum.map(|s| (s * scale) as f32);
                     }
@@ -212,13 +236,14 @@ impl Film {
             return None;
         }
         let (mut sum, mut squares, mut n) = (0.0, 0.0, 0u64);
+        let halves = 1 + self.planned.count_ones() as usize;
         for (t, tile) in self.data.iter().enumerate() {
             for (place, _) in self.tiles.pixels(t) {
                 let [even, odd] = tile.counts(place, self.passes);
                 if even == 0 || odd == 0 {
                     continue;
                 }
-                let (total, half) = (tile.sums[0][place], tile.even[place]);
+                let (total, half) = (tile.planes[0][place], tile.planes[halves][place]);
                 let (n_even, n_odd) = (even as f64, odd as f64);
                 for c in 0..3 {
                     let (a, b) = (half[c] / n_even, (total[c] - half[c]) / n_odd);

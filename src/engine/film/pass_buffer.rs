@@ -12,6 +12,7 @@ pub struct PassBuffer {
     tiles: Tiles,
     /// Bit mask of the layers that have planes here.
     planned: u32,
+    /// At least as many as there are in `tiles`.
     data: Vec<PassTile>,
 }
 
@@ -40,6 +41,18 @@ impl PassBuffer {
         }
     }
 
+    /// This buffer, or a new one, for a pass over `size` pixels with the layers `planned`. Memory
+    /// of a larger picture is kept for the next one: coarse pictures and full ones take turns.
+    #[must_use]
+    pub fn refit(mut self, size: UVec2, planned: u32) -> Self {
+        let tiles = Tiles::new(size);
+        if self.planned != planned || self.data.len() < tiles.len() {
+            return Self::new(size, planned);
+        }
+        self.tiles = tiles;
+        self
+    }
+
     /// How the picture is cut.
     pub fn tiles(&self) -> Tiles {
         self.tiles
@@ -52,12 +65,12 @@ impl PassBuffer {
 
     /// The tiles for writing, in the order of [`Tiles`].
     pub fn tiles_mut(&mut self) -> &mut [PassTile] {
-        &mut self.data
+        &mut self.data[..self.tiles.len()]
     }
 
     /// The tiles for reading.
     pub(super) fn data(&self) -> &[PassTile] {
-        &self.data
+        &self.data[..self.tiles.len()]
     }
 }
 
@@ -84,6 +97,11 @@ impl PassTile {
             self.rejected |= 1 << place;
         }
         finite
+    }
+
+    /// Number of planes.
+    pub(super) fn planes(&self) -> usize {
+        self.planes.len()
     }
 
     /// Values of plane `index`: 0 the whole, then the planned layers.

@@ -80,7 +80,7 @@ fn build(params: &Params) -> Box<dyn Integrator> {
 /// Words that no strategy can find: between S+ and S+ no two vertices can be connected.
 pub(super) fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     (features.zero_size_lights && features.specular).then_some(Missing {
-        words: "LS+((D|G|V)S+)*E",
+        words: "LS+((D|G|V)S+)*E".into(),
         why: "light of a point, spot or directional source that meets mirror or glass before and \
               after every diffuse or glossy surface passes no two neighbouring surfaces that a \
               connection can join",
@@ -325,8 +325,8 @@ impl Integrator for Bdpt {
     fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
         let (size, planned) = (film.size(), cx.plan.planned);
         let mut samples = match self.samples.take() {
-            Some(b) if b.tiles().size() == size && b.planned() == planned => b,
-            _ => PassBuffer::new(size, planned),
+            Some(buffer) => buffer.refit(size, planned),
+            None => PassBuffer::new(size, planned),
         };
         let mut splats = match self.splats.take() {
             Some(b) if b.fits(size, planned) => b,

@@ -69,7 +69,10 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
         ),
         (false, false) => return None,
     };
-    Some(Missing { words, why })
+    Some(Missing {
+        words: words.into(),
+        why,
+    })
 }
 
 struct LightTracer {

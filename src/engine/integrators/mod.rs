@@ -6,16 +6,20 @@
 pub mod bdpt;
 pub mod bidirectional;
 pub mod light;
+pub mod monte_carlo;
 pub mod params;
 pub mod pass;
 pub mod path;
 pub mod pssmlt;
 pub mod stats;
 pub mod tiled;
+pub mod whitted;
 
 pub use params::{ParamKind, ParamSpec, ParamValue, Params};
 pub use pass::{Cancel, Cancelled, Pass};
 pub use stats::{BadSample, RenderStats};
+
+use std::borrow::Cow;
 
 use crate::engine::film::Film;
 use crate::engine::scene::features::SceneFeatures;
@@ -49,13 +53,20 @@ pub struct Entry {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
     /// An expression that the lost words match.
-    pub words: &'static str,
+    pub words: Cow<'static, str>,
     /// Why, in one sentence.
     pub why: &'static str,
 }
 
 /// Every integrator, in the order of the window's list.
-pub const REGISTRY: &[Entry] = &[path::ENTRY, light::ENTRY, bdpt::ENTRY, pssmlt::ENTRY];
+pub const REGISTRY: &[Entry] = &[
+    path::ENTRY,
+    whitted::ENTRY,
+    monte_carlo::ENTRY,
+    light::ENTRY,
+    bdpt::ENTRY,
+    pssmlt::ENTRY,
+];
 
 /// The parameter that [`tiled::SamplerKind`] reads.
 const SAMPLER_PARAM: ParamSpec = ParamSpec {

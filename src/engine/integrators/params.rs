@@ -178,6 +178,14 @@ impl Params {
         }
     }
 
+    /// Value of `name` as it would be typed; empty if there is none.
+    pub fn text(&self, name: &str) -> String {
+        self.0
+            .get(name)
+            .map(ToString::to_string)
+            .unwrap_or_default()
+    }
+
     /// Strategies `name`; all of them if there is no such parameter.
     pub fn strategies(&self, name: &str) -> Strategies {
         match self.0.get(name) {

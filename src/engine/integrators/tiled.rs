@@ -128,11 +128,10 @@ impl<T: RayIntegrator> Tiled<T> {
 
 impl<T: RayIntegrator> Integrator for Tiled<T> {
     fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
-        let fits =
-            |b: &PassBuffer| b.tiles().size() == film.size() && b.planned() == cx.plan.planned;
-        let mut buffer = match self.buffer.take().filter(fits) {
-            Some(buffer) => buffer,
-            None => PassBuffer::new(film.size(), cx.plan.planned),
+        let (size, planned) = (film.size(), cx.plan.planned);
+        let mut buffer = match self.buffer.take() {
+            Some(buffer) => buffer.refit(size, planned),
+            None => PassBuffer::new(size, planned),
         };
         let tiles = buffer.tiles_mut().par_iter_mut().enumerate();
         let stats: Result<Vec<RenderStats>, Cancelled> = tiles

@@ -14,11 +14,11 @@ const MAX_SIDE: f32 = 16384.0;
 pub fn read(file: &str, node: &Node) -> Result<CameraDesc, InputError> {
     let mut f = Fields::new(file, node, "camera")?;
     let default = CameraDesc::default();
-    if let Some((kind, line)) = f.text("type")? {
-        if kind != "perspective" {
-            let message = format!("the type is \"perspective\", not \"{kind}\"");
-            return Err(f.error_at(line, &message));
-        }
+    if let Some((kind, line)) = f.text("type")?
+        && kind != "perspective"
+    {
+        let message = format!("the type is \"perspective\", not \"{kind}\"");
+        return Err(f.error_at(line, &message));
     }
     let position = f.vector("position")?;
     let target = f.vector("target")?;

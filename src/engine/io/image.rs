@@ -128,7 +128,7 @@ fn decode_exr(bytes: &[u8]) -> Result<ImageData, String> {
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| e.to_string())?;
     let (width, pixels) = image.layer_data.channel_data.pixels;
-    let height = if width == 0 { 0 } else { pixels.len() / width };
+    let height = pixels.len().checked_div(width).unwrap_or(0);
     if pixels.is_empty() {
         return Err("it has no pixels".to_owned());
     }

@@ -264,7 +264,7 @@ fn check_mixes(
     named: &[(&Key, &Node)],
     materials: &[NamedMaterial],
 ) -> Result<(), InputError> {
-    for start in 0..materials.len() {
+    for (start, (key, node)) in named.iter().enumerate() {
         let (mut open, mut seen) = (vec![start], vec![false; materials.len()]);
         while let Some(index) = open.pop() {
             let MaterialDesc::Mix {
@@ -274,7 +274,6 @@ fn check_mixes(
                 continue;
             };
             if parts.contains(&start) {
-                let (key, node) = named[start];
                 let message = format!("material \"{}\": it is a mixture of itself", key.name);
                 return Err(InputError::at(file, node.line, message));
             }

@@ -74,10 +74,10 @@ pub fn from_toml(text: &str, name: &str) -> Result<SceneDesc, InputError> {
 fn read(files: &dyn FileSource, file: &str, root: &Node) -> Result<SceneDesc, InputError> {
     let mut f = Fields::new(file, root, "scene")?;
     let mut scene = SceneDesc::default();
-    if let Some(node) = f.take("format") {
-        if !matches!(node.value, Value::Number(1.0)) {
-            return Err(f.error_at(node.line, "format is 1, the only one there is"));
-        }
+    if let Some(node) = f.take("format")
+        && !matches!(node.value, Value::Number(1.0))
+    {
+        return Err(f.error_at(node.line, "format is 1, the only one there is"));
     }
     let stem = Path::new(file)
         .file_stem()

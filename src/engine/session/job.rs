@@ -22,6 +22,13 @@ pub struct Settings {
     pub seed: u64,
 }
 
+/// Equal settings make equal pictures.
+impl PartialEq for Settings {
+    fn eq(&self, other: &Self) -> bool {
+        self.same_integrator(other) && self.layers == other.layers
+    }
+}
+
 impl Settings {
     /// The defaults of an integrator, with the four components.
     pub fn new(integrator: &'static Entry) -> Self {

@@ -45,9 +45,15 @@ impl Renderer {
     /// As [`Self::new`].
     pub fn replace(previous: Option<Self>, job: &RenderJob) -> Result<Self, ExpressionError> {
         let mut renderer = Self::new(job)?;
-        if let Some(previous) = previous.filter(|p| {
-            Arc::ptr_eq(&p.scene, &job.scene) && p.settings.same_integrator(&job.settings)
-        }) {
+        let Some(previous) = previous else {
+            return Ok(renderer);
+        };
+        if let Some(film) = previous.film.reuse(job.size, renderer.plan.planned) {
+            renderer.film = film;
+        }
+        if Arc::ptr_eq(&previous.scene, &job.scene)
+            && previous.settings.same_integrator(&job.settings)
+        {
             renderer.integrator = previous.integrator;
         }
         Ok(renderer)

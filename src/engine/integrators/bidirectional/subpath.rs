@@ -242,7 +242,10 @@ impl Walker<'_> {
                 (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
 
             // The next surface, or the sky.
-            stats.rays += 1;
+            match transport {
+                Transport::Radiance => stats.ray_at(events as u32),
+                Transport::Importance => stats.rays += 1,
+            }
             let opacity_number = || {
                 sampler.seek(first + 7);
                 sampler.next_1d()

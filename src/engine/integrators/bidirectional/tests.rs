@@ -265,7 +265,7 @@ impl Checker<'_> {
         t.close += usize::from(!full.end.infinite && gap < 2e-3);
         t.worst = t.worst.max(error);
         assert!(
-            error < 2e-3,
+            error < 1e-3,
             "{technique:?}: weight {weight} against {expected} of {densities:?}, events {:?}",
             full.inner.iter().map(|v| v.1).collect::<Vec<_>>()
         );
@@ -469,10 +469,11 @@ fn full<'f>(
     }
 }
 
-fn check_scene(scene: &Scene, heuristic: Heuristic, samples: u64) -> Tally {
+fn check_scene(scene: &Scene, heuristic: Heuristic, samples: u64, max_depth: Option<u32>) -> Tally {
     let camera = Camera::new(&scene.camera).expect("a view");
     let settings = LayerSettings {
         components: true,
+        max_depth,
         ..LayerSettings::default()
     };
     let plan = RenderPlan::new(scene, camera.has_lens(), &settings).expect("classes");
@@ -535,7 +536,7 @@ fn weights_are_those_of_the_densities_computed_apart() {
             for lens in ["", LENS] {
                 let scene = things(room, lamp, lights, lens);
                 let samples = if room.is_empty() { 3000 } else { 300 };
-                let tally = check_scene(&scene, heuristic, samples);
+                let tally = check_scene(&scene, heuristic, samples, None);
                 assert!(tally.paths > 1000 && tally.with_delta > 100, "{tally:?}");
                 for i in 0..3 {
                     sum.by_s[i] += tally.by_s[i];
@@ -551,9 +552,10 @@ fn weights_are_those_of_the_densities_computed_apart() {
 
 #[test]
 fn weights_hold_for_vertices_next_to_each_other() {
+    // Longer paths have densities beyond f64: the recursion knows their ratios, this test not.
     for material in ["white", "satin", "frost"] {
-        let tally = check_scene(&slit(material), Heuristic::Balance, 3000);
-        assert!(tally.close > 300, "{tally:?}");
+        let tally = check_scene(&slit(material), Heuristic::Balance, 3000, Some(8));
+        assert!(tally.close > 50, "{tally:?}");
     }
 }
 

@@ -169,6 +169,8 @@ impl Metropolis {
             samples: self.bootstrap,
         };
         let mut chains = Vec::new();
+        // Without light to start from there are no chains, and the picture stays black.
+        stats.dark_starts = u64::from(brightness.sum <= 0.0);
         if let Some(choice) = Discrete::new(&weights) {
             for i in 0..self.chains {
                 let id = half * self.chains + i;

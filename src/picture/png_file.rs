@@ -1,0 +1,54 @@
+//! PNG files with texts, which the `image` crate does not write.
+
+use std::io::{BufRead, Seek};
+
+use glam::UVec2;
+use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, SrgbRenderingIntent};
+
+/// The bytes of a file of 8-bit sRGB pixels.
+///
+/// # Errors
+/// If `pixels` are not `size.x * size.y`.
+pub fn encode(
+    size: UVec2,
+    pixels: &[[u8; 3]],
+    texts: &[(String, String)],
+) -> Result<Vec<u8>, EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, size.x, size.y);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    for (name, text) in texts {
+        encoder.add_itxt_chunk(name.clone(), text.clone())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels.as_flattened())?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// The text `name` of a file, if it is a PNG that has one.
+pub fn read_text(file: impl BufRead + Seek, name: &str) -> Option<String> {
+    let reader = Decoder::new(file).read_info().ok()?;
+    let texts = &reader.info().utf8_text;
+    texts.iter().find(|t| t.keyword == name)?.get_text().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_and_texts_come_back() {
+        let pixels = [[1, 2, 3], [255, 0, 9]];
+        let texts = [("lightscope:state".to_owned(), "{\"π\": 3}".to_owned())];
+        let bytes = encode(UVec2::new(2, 1), &pixels, &texts).expect("two pixels");
+        let read = image::load_from_memory(&bytes).expect("a PNG").to_rgb8();
+        assert_eq!(read.as_raw().as_slice(), pixels.as_flattened());
+        let text = |name| read_text(std::io::Cursor::new(&bytes), name);
+        assert_eq!(text("lightscope:state").as_deref(), Some("{\"π\": 3}"));
+        assert_eq!(text("other"), None);
+        assert!(encode(UVec2::new(3, 1), &pixels, &texts).is_err());
+    }
+}

@@ -1,0 +1,330 @@
+//! The event loop: input goes to the workspace, what it asks for is carried out, and the window
+//! is drawn again only when something changed.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui_wgpu::winit::Painter;
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
+use winit::window::{Fullscreen, Window, WindowId};
+
+use super::ViewError;
+use super::gpu::painter;
+use super::loader::Loader;
+use super::panels;
+use super::rendering::Rendering;
+use super::source::SceneSource;
+use super::workspace::{Request, Workspace};
+
+/// What wakes the event loop from other threads.
+#[derive(Debug)]
+pub enum Wake {
+    /// A frame is there.
+    Frame,
+    /// A scene is there.
+    Loaded,
+    /// A file was written, or was not.
+    Saved(Result<String, String>),
+    /// The window was copied.
+    Captured(Arc<egui::ColorImage>),
+    /// The graphics device is gone.
+    DeviceLost,
+}
+
+/// The program around the workspace.
+pub struct App {
+    pub(super) workspace: Workspace,
+    pub(super) proxy: EventLoopProxy<Wake>,
+    loader: Loader,
+    rendering: Rendering,
+    context: egui::Context,
+    shown: Option<Shown>,
+    repaint_at: Option<Instant>,
+    capture: bool,
+    pub(super) clipboard: Option<arboard::Clipboard>,
+    /// Why the window could not open.
+    pub error: Option<ViewError>,
+}
+
+/// What exists while there is a window.
+struct Shown {
+    window: Arc<Window>,
+    input: egui_winit::State,
+    painter: Painter,
+}
+
+impl App {
+    /// Starts to load `source`.
+    ///
+    /// # Errors
+    /// If the system refuses to start threads.
+    pub fn new(source: SceneSource, proxy: EventLoopProxy<Wake>) -> Result<Self, ViewError> {
+        // An event loop that is gone no longer waits.
+        let wake = |proxy: &EventLoopProxy<Wake>, what: fn() -> Wake| {
+            let proxy = proxy.clone();
+            move || drop(proxy.send_event(what()))
+        };
+        let rendering = Rendering::new(wake(&proxy, || Wake::Frame)).map_err(ViewError::Failed)?;
+        let context = egui::Context::default();
+        panels::apply_style(&context);
+        let mut app = Self {
+            workspace: Workspace::new(source.clone()),
+            loader: Loader::new(wake(&proxy, || Wake::Loaded)),
+            proxy,
+            rendering,
+            context,
+            shown: None,
+            repaint_at: None,
+            capture: false,
+            clipboard: None,
+            error: None,
+        };
+        app.load(source, false);
+        Ok(app)
+    }
+
+    /// Starts to read a scene.
+    pub(super) fn load(&mut self, source: SceneSource, again: bool) {
+        self.workspace.loading = Some(source.clone());
+        if let Err(error) = self.loader.start(source, again) {
+            self.workspace.loading = None;
+            self.workspace.notices.set_error("scene", error);
+        }
+    }
+
+    fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<Shown, ViewError> {
+        let attributes = Window::default_attributes()
+            .with_title("lightscope")
+            .with_inner_size(LogicalSize::new(1280.0, 800.0))
+            .with_min_inner_size(LogicalSize::new(320.0, 240.0));
+        let window = event_loop
+            .create_window(attributes)
+            .map_err(|error| ViewError::Failed(format!("no window can be opened: {error}")))?;
+        let window = Arc::new(window);
+        let painter = self.painter(event_loop, &window)?;
+        let input = egui_winit::State::new(
+            self.context.clone(),
+            egui::ViewportId::ROOT,
+            event_loop,
+            Some(window.scale_factor() as f32),
+            window.theme(),
+            painter.max_texture_side(),
+        );
+        Ok(Shown {
+            window,
+            input,
+            painter,
+        })
+    }
+
+    fn painter(
+        &mut self,
+        event_loop: &ActiveEventLoop,
+        window: &Arc<Window>,
+    ) -> Result<Painter, ViewError> {
+        let proxy = self.proxy.clone();
+        let lost = move || drop(proxy.send_event(Wake::DeviceLost));
+        let display = event_loop.owned_display_handle();
+        let painter =
+            painter::create(&self.context, display, window, lost).map_err(ViewError::NoAdapter)?;
+        self.workspace.max_pixels = painter::max_pixels(&painter);
+        Ok(painter)
+    }
+
+    fn request_redraw(&self) {
+        if let Some(shown) = &self.shown {
+            shown.window.request_redraw();
+        }
+    }
+
+    /// Takes over what other threads have made.
+    fn take_news(&mut self) {
+        if let Some(loaded) = self.loader.finished() {
+            self.workspace.loading = None;
+            match loaded.scene {
+                Ok(scene) => self
+                    .workspace
+                    .show_scene(loaded.source, scene, loaded.again),
+                Err(sentence) => self.workspace.notices.set_error("scene", sentence),
+            }
+            self.set_title();
+        }
+        if let Some(frame) = self.rendering.new_frame() {
+            self.workspace.show_frame(frame);
+        }
+    }
+
+    fn set_title(&self) {
+        if let Some(shown) = &self.shown {
+            let name = self.workspace.model.source.short_name();
+            shown.window.set_title(&format!("{name} – lightscope"));
+        }
+    }
+
+    fn redraw(&mut self, event_loop: &ActiveEventLoop) {
+        self.take_news();
+        let Some(shown) = &mut self.shown else { return };
+        let size = shown.window.inner_size();
+        if size.width == 0 || size.height == 0 {
+            return;
+        }
+        let input = shown.input.take_egui_input(&shown.window);
+        let workspace = &mut self.workspace;
+        let mut output = self.context.run_ui(input, |ui| panels::show(ui, workspace));
+        shown
+            .input
+            .handle_platform_output(&shown.window, output.platform_output);
+        let delay = output
+            .viewport_output
+            .get(&egui::ViewportId::ROOT)
+            .map_or(Duration::MAX, |viewport| viewport.repaint_delay);
+        self.repaint_at = Instant::now().checked_add(delay);
+        let primitives = self
+            .context
+            .tessellate(output.shapes, output.pixels_per_point);
+        let capture = if std::mem::take(&mut self.capture) {
+            let proxy = self.proxy.clone();
+            let send = move |image| drop(proxy.send_event(Wake::Captured(image)));
+            vec![egui::ScreenshotCallback::new(send)]
+        } else {
+            Vec::new()
+        };
+        let captures = !capture.is_empty();
+        shown.painter.paint_and_update_textures(
+            egui::ViewportId::ROOT,
+            output.pixels_per_point,
+            [0.0, 0.0, 0.0, 1.0],
+            &primitives,
+            &mut output.textures_delta,
+            capture,
+            &shown.window,
+        );
+        if captures {
+            painter::wait(&shown.painter);
+        }
+        self.carry_out(event_loop);
+        self.follow();
+    }
+
+    /// Hands the model to the render session where it changed.
+    fn follow(&mut self) {
+        self.rendering.set_paused(self.workspace.paused);
+        let Some(scene) = self.workspace.scene.clone() else {
+            return;
+        };
+        let (model, size) = (&self.workspace.model, self.workspace.pixels());
+        let navigating = self.workspace.navigating;
+        match self.rendering.follow(&scene, model, size, navigating) {
+            Ok(()) => self.workspace.notices.clear_error("view"),
+            Err(sentence) => self.workspace.notices.set_error("view", sentence),
+        }
+    }
+
+    fn carry_out(&mut self, event_loop: &ActiveEventLoop) {
+        for request in std::mem::take(&mut self.workspace.requests) {
+            match request {
+                Request::Load(source) => self.load(source, false),
+                Request::Reload => self.load(self.workspace.model.source.clone(), true),
+                Request::Save(format) => self.save(format),
+                Request::SaveWindow => {
+                    self.capture = true;
+                    self.request_redraw();
+                }
+                Request::Copy => self.copy(),
+                Request::FullScreen => self.toggle_full_screen(),
+                Request::Quit => event_loop.exit(),
+            }
+        }
+    }
+
+    fn toggle_full_screen(&self) {
+        if let Some(shown) = &self.shown {
+            let next = match shown.window.fullscreen() {
+                Some(_) => None,
+                None => Some(Fullscreen::Borderless(None)),
+            };
+            shown.window.set_fullscreen(next);
+        }
+    }
+
+    /// Makes everything on the graphics card anew.
+    fn recover(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(shown) = self.shown.take() else {
+            return;
+        };
+        drop(shown.painter);
+        match self.open(event_loop) {
+            Ok(shown) => self.shown = Some(shown),
+            Err(error) => {
+                self.error = Some(error);
+                event_loop.exit();
+            }
+        }
+        self.request_redraw();
+    }
+}
+
+impl ApplicationHandler<Wake> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.shown.is_some() {
+            return;
+        }
+        match self.open(event_loop) {
+            Ok(shown) => {
+                self.shown = Some(shown);
+                self.set_title();
+                self.request_redraw();
+            }
+            Err(error) => {
+                self.error = Some(error);
+                event_loop.exit();
+            }
+        }
+    }
+
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Wake) {
+        match event {
+            Wake::Frame | Wake::Loaded => {}
+            Wake::Saved(Ok(sentence)) => self.workspace.notices.say(sentence),
+            Wake::Saved(Err(sentence)) => self.workspace.notices.set_error("save", sentence),
+            Wake::Captured(image) => self.save_window(&image),
+            Wake::DeviceLost => self.recover(event_loop),
+        }
+        self.request_redraw();
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(shown) = &mut self.shown else { return };
+        match &event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::RedrawRequested => return self.redraw(event_loop),
+            WindowEvent::Resized(size) => {
+                let sides = std::num::NonZeroU32::new(size.width)
+                    .zip(std::num::NonZeroU32::new(size.height));
+                if let Some((width, height)) = sides {
+                    let root = egui::ViewportId::ROOT;
+                    shown.painter.on_window_resized(root, width, height);
+                }
+            }
+            _ => {}
+        }
+        if shown.input.on_window_event(&shown.window, &event).repaint {
+            shown.window.request_redraw();
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let due = self.repaint_at.is_some_and(|at| at <= Instant::now());
+        if due {
+            self.repaint_at = None;
+            self.request_redraw();
+        }
+        event_loop.set_control_flow(match self.repaint_at {
+            Some(at) => ControlFlow::WaitUntil(at),
+            None => ControlFlow::Wait,
+        });
+    }
+}

@@ -1,0 +1,90 @@
+//! Saving and copying: the part of the program that touches files and the clipboard.
+
+use std::borrow::Cow;
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use super::app::{App, Wake};
+use super::export;
+use super::saver::{fresh_name, save};
+use super::workspace::Format;
+use crate::picture::png_file;
+
+impl App {
+    /// Saves the picture under a new name in the current folder.
+    pub(super) fn save(&mut self, format: Format) {
+        let Some(frame) = self.workspace.frame.clone() else {
+            self.workspace
+                .notices
+                .say("There is no picture to save yet.");
+            return;
+        };
+        let model = self.workspace.model.clone();
+        let stem = format!("{}-{}spp", model.source.short_name(), frame.passes);
+        match format {
+            Format::Png => self.write(&stem, "png", move || export::png(&frame, &model)),
+            Format::Exr => self.write(&stem, "exr", move || export::exr(&frame, &model)),
+        }
+    }
+
+    /// Saves a copy of the window.
+    pub(super) fn save_window(&mut self, image: &Arc<egui::ColorImage>) {
+        let stem = format!("{}-window", self.workspace.model.source.short_name());
+        let image = Arc::clone(image);
+        self.write(&stem, "png", move || {
+            let [width, height] = image.size;
+            let pixels: Vec<[u8; 3]> = image.pixels.iter().map(|p| [p.r(), p.g(), p.b()]).collect();
+            let size = UVec2::new(width as u32, height as u32);
+            png_file::encode(size, &pixels, &[]).map_err(|error| error.to_string())
+        });
+    }
+
+    fn write(
+        &self,
+        stem: &str,
+        extension: &str,
+        bytes: impl FnOnce() -> Result<Vec<u8>, String> + Send + 'static,
+    ) {
+        let proxy = self.proxy.clone();
+        let done = move |result| drop(proxy.send_event(Wake::Saved(result)));
+        save(fresh_name(Path::new(""), stem, extension), bytes, done);
+    }
+
+    /// Copies the picture as it is shown.
+    pub(super) fn copy(&mut self) {
+        let Some(frame) = self.workspace.frame.clone() else {
+            self.workspace
+                .notices
+                .say("There is no picture to copy yet.");
+            return;
+        };
+        let (size, pixels) = export::shown(&frame, &self.workspace.model.display);
+        let bytes: Vec<u8> = pixels
+            .iter()
+            .flat_map(|[r, g, b]| [*r, *g, *b, 255])
+            .collect();
+        let image = arboard::ImageData {
+            width: size.x as usize,
+            height: size.y as usize,
+            bytes: Cow::Owned(bytes),
+        };
+        let copied = match &mut self.clipboard {
+            Some(clipboard) => clipboard.set_image(image),
+            None => arboard::Clipboard::new().and_then(|mut clipboard| {
+                let copied = clipboard.set_image(image);
+                // On X11 the owner of the clipboard must live on.
+                self.clipboard = Some(clipboard);
+                copied
+            }),
+        };
+        match copied {
+            Ok(()) => self.workspace.notices.say("Copied the picture."),
+            Err(error) => {
+                let sentence = format!("The picture cannot be copied: {error}");
+                self.workspace.notices.set_error("copy", sentence);
+            }
+        }
+    }
+}

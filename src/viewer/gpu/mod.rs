@@ -1,0 +1,11 @@
+//! The picture on the graphics card: buffers, pipeline, shader. Panels are drawn by egui.
+
+mod layers;
+mod layout;
+pub mod painter;
+mod picture;
+#[cfg(test)]
+mod tests;
+
+pub use layout::{Placement, picture_point};
+pub use picture::PictureCallback;

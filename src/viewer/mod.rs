@@ -1,0 +1,84 @@
+//! The window: a picture that converges, and a panel beside it.
+//!
+//! [`workspace::Workspace`] is everything the window knows, without threads, files or graphics;
+//! `panels` draw and change it; `app` feeds it input, carries out what it asks for and hands its
+//! [`model::Model`] to the render session, from which only immutable frames come back. The
+//! picture is drawn by `gpu` within egui's render pass.
+
+mod app;
+mod balance;
+pub mod commands;
+pub mod display;
+mod export;
+mod exposure;
+mod false_color;
+mod files;
+mod gpu;
+pub mod history;
+mod loader;
+pub mod model;
+pub mod navigation;
+pub mod notices;
+pub mod panels;
+pub mod picking;
+mod rendering;
+mod saver;
+pub mod source;
+pub mod workspace;
+
+use std::fmt;
+
+use winit::event_loop::EventLoop;
+
+use app::{App, Wake};
+use source::SceneSource;
+
+/// Why there is no window.
+#[derive(Debug)]
+pub enum ViewError {
+    /// No screen to open a window on.
+    NoDisplay,
+    /// Nothing that draws into a window.
+    NoAdapter(String),
+    /// Something else, in a sentence.
+    Failed(String),
+}
+
+/// What works without a window.
+const WAY_OUT: &str = "`lightscope render SCENE -o OUT.png` needs no window";
+
+impl fmt::Display for ViewError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoDisplay => write!(
+                f,
+                "there is no display to open a window on (DISPLAY and WAYLAND_DISPLAY name none \
+                 that answers); {WAY_OUT}"
+            ),
+            Self::NoAdapter(why) => write!(
+                f,
+                "no graphics driver can draw in a window ({why}); install one, such as Debian's \
+                 mesa-vulkan-drivers, which works without a graphics card, or do without: {WAY_OUT}"
+            ),
+            Self::Failed(sentence) => f.write_str(sentence),
+        }
+    }
+}
+
+/// Opens the window on `source` and returns when it is closed.
+///
+/// # Errors
+/// Without display or graphics driver.
+pub fn run(source: SceneSource) -> Result<(), ViewError> {
+    let event_loop = EventLoop::<Wake>::with_user_event()
+        .build()
+        .map_err(|_| ViewError::NoDisplay)?;
+    let mut app = App::new(source, event_loop.create_proxy())?;
+    event_loop
+        .run_app(&mut app)
+        .map_err(|error| ViewError::Failed(format!("the window failed: {error}")))?;
+    match app.error.take() {
+        Some(error) => Err(error),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,6 @@
+//! Every control of the window, found by its accessible name, without a window.
+#![cfg(feature = "viewer")]
+
+mod controls;
+mod desk;
+mod hand;
