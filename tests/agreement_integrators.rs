@@ -322,7 +322,7 @@ fn without_the_whole_the_layers_asked_for_stay_the_same() {
         with.settings.layers.components = false;
         let mut without = with.clone();
         without.settings.layers.no_whole = true;
-        let (with, without) = (render(&with, 4), render(&without, 4));
+        let (with, without) = (render(&with, 16), render(&without, 16));
         for layer in [EXPR1, EXPR1 + 1] {
             let mean = support::agreement::mean(&with.layers[layer].pixels);
             let lost = entry.id == "whitted" && layer == EXPR1;

@@ -69,12 +69,7 @@ const CHUNK: usize = 16;
 const ROUND: usize = 128;
 
 fn build(params: &Params) -> Box<dyn Integrator> {
-    Box::new(Bdpt {
-        estimator: Bidirectional::new(params),
-        sampler: SamplerKind::of(params),
-        samples: None,
-        splats: None,
-    })
+    Box::new(Bdpt::new(params))
 }
 
 /// Words that no strategy can find: between S+ and S+ no two vertices can be connected.
@@ -212,7 +207,7 @@ pub(super) fn lens_dimension(s: usize) -> u32 {
 }
 
 /// The integrator.
-struct Bdpt {
+pub(super) struct Bdpt {
     estimator: Bidirectional,
     sampler: SamplerKind,
     samples: Option<PassBuffer>,
@@ -240,7 +235,17 @@ impl Sink for Weighted<'_, '_> {
 }
 
 impl Bdpt {
-    fn sample_pixel(
+    pub(super) fn new(params: &Params) -> Self {
+        Self {
+            estimator: Bidirectional::new(params),
+            sampler: SamplerKind::of(params),
+            samples: None,
+            splats: None,
+        }
+    }
+
+    /// Takes the sample of `pixel` in the pass `cx`.
+    pub(super) fn sample_pixel(
         &self,
         cx: &Pass<'_>,
         pixel: UVec2,

@@ -11,6 +11,7 @@ pub mod params;
 pub mod pass;
 pub mod path;
 pub mod pssmlt;
+pub mod pyramid;
 pub mod stats;
 pub mod tiled;
 pub mod whitted;
