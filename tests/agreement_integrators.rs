@@ -275,6 +275,33 @@ fn metropolis_without_light_is_black_and_says_so() {
     assert_eq!(frame.stats.dark_starts, 2);
 }
 
+/// Merging blurs: after 32 passes the radius is 0.4 % of the scene's, and what is compared are the
+/// means of the picture, to within 2 % of the whole's mean and 4 standard errors.
+#[test]
+fn merging_tends_to_the_mean() {
+    let scene = scene_from_toml(&things(LENS, true, true, ""));
+    let path = runs_of(job(&scene, "path", &[]), 128);
+    for (id, passes) in [("vcm", 16), ("sppm", 32)] {
+        let frames = runs_of(job(&scene, id, &[("radius", "0.01")]), passes);
+        for layer in 0..5 {
+            let of = |f: &Frame| support::agreement::mean(&f.layers[layer].pixels);
+            let n = frames.len() as f64;
+            let moments = |frames: &[Frame]| {
+                let m = frames.iter().map(of).sum::<f64>() / n;
+                let v = frames.iter().map(|f| (of(f) - m).powi(2)).sum::<f64>() / (n - 1.0) / n;
+                (m, v)
+            };
+            let ((a, va), (b, vb)) = (moments(&frames), moments(&path));
+            let whole = support::reference::whole_mean(&path);
+            println!("{id} layer {layer}: {a} against {b} ± {}", (va + vb).sqrt());
+            assert!(
+                (a - b).abs() < 0.02 * whole + 4.0 * (va + vb).sqrt(),
+                "{id} layer {layer}: {a} against {b}"
+            );
+        }
+    }
+}
+
 /// Sum over a partition minus the whole, relative to the whole's mean, at the worst pixel.
 fn gap(frame: &Frame, layers: std::ops::Range<usize>) -> f64 {
     let mean = support::agreement::mean(&frame.layers[0].pixels);

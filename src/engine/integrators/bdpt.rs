@@ -10,7 +10,7 @@ use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
 use super::bidirectional::{
-    Connector, FIRST_LIGHT_VERTEX, Heuristic, Sink, Strategies, Subpath, Technique,
+    Connector, FIRST_LIGHT_VERTEX, Heuristic, PhotonGrid, Sink, Strategies, Subpath, Technique,
     VERTEX_DIMENSIONS, Walker,
 };
 use super::tiled::{CAMERA_DIMENSIONS, SamplerKind};
@@ -115,13 +115,18 @@ impl Bidirectional {
         }
     }
 
-    /// Takes one sample at the film position `film`: two walks and all their connections. The eye
-    /// sampler stands behind film and lens.
+    /// Takes one sample at the film position `film`: two walks and all their connections, and
+    /// mergings with the photons of `grid`. The eye sampler stands behind film and lens.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what one sample needs and where it goes"
+    )]
     pub(super) fn sample<S: Sampler>(
         &self,
         cx: &Pass<'_>,
         (film, lens): (Vec2, Vec2),
         samplers: (&mut S, &mut S),
+        grid: Option<&PhotonGrid>,
         work: &mut Workspace,
         sink: &mut impl Sink,
         stats: &mut RenderStats,
@@ -173,6 +178,13 @@ impl Bidirectional {
             }
         }
 
+        // Merging.
+        if let Some(grid) = grid {
+            for t in 2..=eye.len() {
+                connector.merge(grid, eye, t);
+            }
+        }
+
         // t = 1: the light path ends on the lens.
         let Some(start) = start else { return };
         let lens = eye.densities(1)[0];
@@ -210,6 +222,8 @@ pub(super) fn lens_dimension(s: usize) -> u32 {
 pub(super) struct Bdpt {
     estimator: Bidirectional,
     sampler: SamplerKind,
+    /// Photons to merge with.
+    grid: Option<PhotonGrid>,
     samples: Option<PassBuffer>,
     splats: Option<SplatBuffer>,
 }
@@ -239,9 +253,16 @@ impl Bdpt {
         Self {
             estimator: Bidirectional::new(params),
             sampler: SamplerKind::of(params),
+            grid: None,
             samples: None,
             splats: None,
         }
+    }
+
+    /// Merges with the photons of `grid` from now on.
+    pub(super) fn merge_with(&mut self, grid: PhotonGrid) {
+        self.estimator.strategies.merging = grid.merging();
+        self.grid = Some(grid);
     }
 
     /// Takes the sample of `pixel` in the pass `cx`.
@@ -288,8 +309,15 @@ impl Bdpt {
         };
         stats.samples += 1;
         let samplers = (&mut eye, &mut light);
-        self.estimator
-            .sample(cx, (film, lens), samplers, work, sink, stats);
+        self.estimator.sample(
+            cx,
+            (film, lens),
+            samplers,
+            self.grid.as_ref(),
+            work,
+            sink,
+            stats,
+        );
     }
 
     fn render_chunk(

@@ -151,6 +151,7 @@ impl LightTracer {
             own: 1.0,
             other: 0.0,
             connectible: true,
+            mergeable: false,
         };
         for s in 1..=path.len() {
             sampler.seek(lens_dimension(s));

@@ -12,8 +12,10 @@ pub mod pass;
 pub mod path;
 pub mod pssmlt;
 pub mod pyramid;
+pub mod sppm;
 pub mod stats;
 pub mod tiled;
+pub mod vcm;
 pub mod whitted;
 
 pub use params::{ParamKind, ParamSpec, ParamValue, Params};
@@ -67,6 +69,8 @@ pub const REGISTRY: &[Entry] = &[
     light::ENTRY,
     bdpt::ENTRY,
     pssmlt::ENTRY,
+    sppm::ENTRY,
+    vcm::ENTRY,
 ];
 
 /// The parameter that [`tiled::SamplerKind`] reads.

@@ -61,6 +61,11 @@ impl<T: RayIntegrator> Tiled<T> {
         }
     }
 
+    /// The estimator, to be changed between passes.
+    pub fn estimator_mut(&mut self) -> &mut T {
+        &mut self.estimator
+    }
+
     /// Computes the sample of one pixel in one pass again, alone.
     pub fn sample(
         &self,

@@ -18,6 +18,8 @@ pub enum Stream {
     Chain = 6,
     /// Independent samples that chains start from and their normalisation is estimated by.
     Bootstrap = 7,
+    /// Light paths whose vertices are merged: the index is a path number.
+    Photon = 8,
 }
 
 /// Uniform numbers in [0, 1) for one sample, dimension after dimension.

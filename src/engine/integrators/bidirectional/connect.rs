@@ -6,12 +6,13 @@
 use glam::{Vec2, Vec3A};
 
 use super::ends::{LightEnd, area_density};
+use super::merge::PhotonGrid;
 use super::strategies::Strategies;
 use super::subpath::{Escape, LightStart, Subpath, Vertex};
-use super::weight::{Density, Join, weight};
+use super::weight::{Density, Join, Meeting, weight};
 use crate::engine::bsdf::Transport;
 use crate::engine::camera::CameraSample;
-use crate::engine::event::Event;
+use crate::engine::event::{Event, Letter};
 use crate::engine::geometry::{Ray, offset_origin};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
@@ -50,6 +51,7 @@ pub struct Connector<'a, K> {
 /// An event evaluated at the end of a subpath.
 struct End {
     class: ClassId,
+    diffuse: bool,
     /// f·cosθ of the event.
     f: Rgb,
     /// Density toward the other subpath, 1/sr.
@@ -63,6 +65,7 @@ impl End {
     fn new(v: &Vertex, event: Event, class: ClassId, wi: Vec3A, transport: Transport) -> Self {
         Self {
             class,
+            diffuse: event == Event::Diffuse,
             f: v.bsdf.eval(event, v.si.wo, wi, transport),
             toward: v.bsdf.pdf(event, v.si.wo, wi),
             back: v.bsdf.pdf(event, wi, v.si.wo),
@@ -125,6 +128,8 @@ impl<K: Sink> Connector<'_, K> {
             shadow_ratio = end.shadow_ratio(pdf_li, le, before.p);
         }
         let join = Join {
+            diffuse: [false; 2],
+            meeting: Meeting::Connection,
             light: &[],
             eye: eye.densities(t),
             light_other: [0.0; 2],
@@ -160,6 +165,7 @@ impl<K: Sink> Connector<'_, K> {
                 own: escape.pdf_dir,
                 other: 0.0,
                 connectible: true,
+                mergeable: false,
             });
             let departs = if t > 2 {
                 end.depart(le, escape.d, &eye.vertex(t - 2).si)
@@ -167,6 +173,8 @@ impl<K: Sink> Connector<'_, K> {
                 0.0
             };
             let join = Join {
+                diffuse: [false; 2],
+                meeting: Meeting::Connection,
                 light: &[],
                 eye: scratch,
                 light_other: [0.0; 2],
@@ -223,10 +231,13 @@ impl<K: Sink> Connector<'_, K> {
                 return;
             }
             let join = Join {
+                diffuse: [false, event == Event::Diffuse],
+                meeting: Meeting::Connection,
                 light: &[Density {
                     own: start,
                     other: 0.0,
                     connectible: true,
+                    mergeable: false,
                 }],
                 eye: eye.densities(t),
                 light_other: [end.arrive(z.toward, p), 0.0],
@@ -284,6 +295,8 @@ impl<K: Sink> Connector<'_, K> {
                     return;
                 }
                 let join = Join {
+                    diffuse: [light_end.diffuse, eye_end.diffuse],
+                    meeting: Meeting::Connection,
                     light: light.densities(s),
                     eye: eye.densities(t),
                     light_other: [
@@ -303,6 +316,59 @@ impl<K: Sink> Connector<'_, K> {
                 self.sink.add(Technique { s, t }, class, value, weight);
             }
         }
+    }
+
+    /// Merging: the last of the `t` vertices of the eye walk with the photons around it.
+    pub fn merge(&mut self, grid: &PhotonGrid, eye: &Subpath, t: usize) {
+        let v = eye.vertex(t - 1);
+        if !v.bsdf.has(Event::Diffuse) {
+            return;
+        }
+        let plan = self.cx.plan;
+        let suffix = plan.classes.prepend(Letter::D, v.class);
+        let scale = (1.0 / grid.merging()) as f32;
+        let densities = eye.densities(t);
+        let eye_before = if t > 2 { densities[t - 3].other } else { 0.0 };
+        grid.within(v.si.p, |photon| {
+            let s = photon.s as usize;
+            let class = plan.classes.join(photon.class, suffix);
+            let long = plan.max_depth.is_some_and(|max| s + t > max as usize + 3);
+            if long || !plan.is_wanted(class) {
+                return;
+            }
+            let end = End::new(v, Event::Diffuse, class, photon.wo, Transport::Radiance);
+            let cos = v.si.n_g.dot(photon.wo).abs();
+            if end.f.is_black() || cos == 0.0 {
+                return;
+            }
+            let (path, light) = grid.path(photon);
+            let previous = match (s, t) {
+                // Where the photon came from: its light, or the vertex before, whose cosine and
+                // distance are those of the densities that the light walk kept.
+                (2, _) => path.end.arrive(end.toward, v.si.p),
+                _ => end.toward * photon.back,
+            };
+            let ahead = if t > 2 {
+                area_density(end.back, v.si.p, &eye.vertex(t - 2).si)
+            } else {
+                0.0 // the lens is never met
+            };
+            let join = Join {
+                light,
+                eye: eye.densities(t - 1),
+                light_other: [densities[t - 1].own, previous],
+                eye_other: [ahead, eye_before],
+                shadow_ratio: path.shadow_ratio,
+                diffuse: [true, false],
+                meeting: Meeting::Merging,
+                zero_size: path.end.zero_size,
+                infinite: path.end.infinite,
+            };
+            let weight = weight(&join, self.strategies);
+            // Flux per area over the cosine is radiance times solid angle.
+            let value = v.throughput * photon.flux * end.f * (scale / cos);
+            self.sink.add(Technique { s, t }, class, value, weight);
+        });
     }
 
     /// t = 1, s ≥ 2: the last of `s` vertices of the light walk is joined to the lens by the random
@@ -333,6 +399,8 @@ impl<K: Sink> Connector<'_, K> {
                 return;
             }
             let join = Join {
+                diffuse: [event == Event::Diffuse, false],
+                meeting: Meeting::Connection,
                 light: light.densities(s),
                 eye: std::slice::from_ref(lens),
                 light_other: [seen, Self::before(light, s - 1, end.back, Some(&start.end))],
@@ -371,6 +439,8 @@ impl<K: Sink> Connector<'_, K> {
         }
         let seen = self.lens_pdf(&sample) * (cos / sample.distance) / sample.distance;
         let join = Join {
+            diffuse: [false; 2],
+            meeting: Meeting::Connection,
             light: light.densities(1),
             eye: std::slice::from_ref(lens),
             light_other: [seen, 0.0],

@@ -13,6 +13,7 @@
 
 mod connect;
 mod ends;
+mod merge;
 mod strategies;
 mod subpath;
 mod weight;
@@ -22,8 +23,9 @@ mod tests;
 
 pub use connect::{Connector, Sink, Technique};
 pub use ends::LightEnd;
+pub use merge::{PhotonGrid, PhotonList};
 pub use strategies::{Heuristic, Strategies};
 pub use subpath::{
     Escape, FIRST_LIGHT_VERTEX, LightStart, Subpath, VERTEX_DIMENSIONS, Vertex, Walker,
 };
-pub use weight::{Density, Join, weight};
+pub use weight::{Density, Join, Meeting, weight};

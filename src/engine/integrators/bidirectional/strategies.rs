@@ -27,10 +27,12 @@ const ROW: usize = 32;
 /// The strategies (s, t) that are on: s vertices from the light, t from the lens.
 ///
 /// In words: `all`, `all-0,2-*,1` (all but these; `*` is any number), or `1,2+0,2` (these alone).
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Strategies {
     /// How those that are on share a path.
     pub heuristic: Heuristic,
+    /// Number of light paths times the area of merging, m²; 0 if vertices are not merged.
+    pub merging: f64,
     /// Bit t of row s.
     on: [u32; ROW],
     all: bool,
@@ -41,6 +43,7 @@ impl Strategies {
     pub fn all(heuristic: Heuristic) -> Self {
         Self {
             heuristic,
+            merging: 0.0,
             on: [u32::MAX; ROW],
             all: true,
         }

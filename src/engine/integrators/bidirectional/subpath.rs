@@ -83,6 +83,7 @@ impl Subpath {
             own,
             other: 0.0,
             connectible: true,
+            mergeable: false,
         });
     }
 
@@ -265,6 +266,7 @@ impl Walker<'_> {
                 own,
                 other: 0.0,
                 connectible: true,
+                mergeable: false,
             });
             path.vertices.push(Vertex {
                 bsdf: self.cx.scene.bsdf(&si),
@@ -353,6 +355,7 @@ impl Walker<'_> {
         let last = path.vertices.len();
         path.vertices[last - 1].event = Some(sample.event);
         path.densities[last].connectible = !sample.event.is_delta();
+        path.densities[last].mergeable = sample.event == Event::Diffuse;
         path.densities[last - 1].other = match origin {
             _ if last >= 2 => area_density(backward, si.p, &path.vertices[last - 2].si),
             Origin::Light(end, _) => end.arrive(backward, si.p),

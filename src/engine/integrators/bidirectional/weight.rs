@@ -21,6 +21,17 @@ pub struct Density {
     pub other: f32,
     /// The event drawn there has a density, so that a connection may end there.
     pub connectible: bool,
+    /// It is diffuse, so that vertices may be merged there.
+    pub mergeable: bool,
+}
+
+/// How two subpaths make one path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meeting {
+    /// Their last vertices are connected.
+    Connection,
+    /// The last vertex of `light` was merged with one that the eye walk drew after `eye`.
+    Merging,
 }
 
 /// A complete path of n = s + t vertices, with what the connection of its two parts decides.
@@ -36,6 +47,10 @@ pub struct Join<'a> {
     pub eye_other: [f32; 2],
     /// Density of a shadow ray to v₀ over that of a walk that starts there.
     pub shadow_ratio: f32,
+    /// The events at the ends of `light` and `eye` that meet are diffuse.
+    pub diffuse: [bool; 2],
+    /// How the two parts meet.
+    pub meeting: Meeting,
     /// The light has no size: s = 0 cannot find it.
     pub zero_size: bool,
     /// The light lies at infinity: v₀ is joined to no lens.
@@ -54,7 +69,7 @@ impl Join<'_> {
             _ => {
                 let open = |v: usize| {
                     v + 1 == s
-                        || v == s
+                        || v == s && self.meeting == Meeting::Connection
                         || v == 0
                         || v + 1 == n
                         || if v < s {
@@ -65,6 +80,23 @@ impl Join<'_> {
                 };
                 open(i - 1) && open(i)
             }
+        }
+    }
+
+    /// Whether vertex `i` of the path may be one that was merged.
+    #[inline]
+    fn merges(&self, i: usize) -> bool {
+        let (s, n) = (self.light.len(), self.light.len() + self.eye.len());
+        if i == 0 || i + 1 == n {
+            false
+        } else if i + 1 == s {
+            self.diffuse[0]
+        } else if i == s && self.meeting == Meeting::Connection {
+            self.diffuse[1]
+        } else if i < s {
+            self.light[i].mergeable
+        } else {
+            self.eye[n - 1 - i].mergeable
         }
     }
 
@@ -92,26 +124,45 @@ fn other(path: &[Density], ends: [f32; 2], i: usize) -> f32 {
 
 /// The weight of the strategy that sampled `join`: its density, or a power of it, over the sum of
 /// those of all strategies that are on.
+///
+/// Merging at vᵢ has the density p(i + 1) times that of vᵢ from the eye times the number of light
+/// paths that fall on the area of merging (Georgiev et al. 2012, equation 11).
 pub fn weight(join: &Join<'_>, strategies: &Strategies) -> f32 {
     let (s, n) = (join.light.len(), join.light.len() + join.eye.len());
-    let share = |i: usize, ratio: f64| {
+    let merging = strategies.merging;
+    let connection = |i: usize, ratio: f64| {
         if join.connects(i) && strategies.is_on(i, n - i) {
             strategies.heuristic.share(ratio * join.start_ratio(i))
         } else {
             0.0
         }
     };
-    let own = strategies.heuristic.share(join.start_ratio(s));
-    let mut sum = own;
+    let merge = |i: usize, ratio: f64, eye: f32| {
+        if merging > 0.0 && join.merges(i) {
+            strategies.heuristic.share(ratio * f64::from(eye) * merging)
+        } else {
+            0.0
+        }
+    };
+    let (own, mut sum) = match join.meeting {
+        Meeting::Connection => {
+            let own = strategies.heuristic.share(join.start_ratio(s));
+            (own, own)
+        }
+        // The sum meets the merging itself on its way.
+        Meeting::Merging => (merge(s - 1, 1.0, join.light_other[0]), connection(s, 1.0)),
+    };
 
     // Fewer and fewer vertices from the light: s − 1, s − 2 … 0.
     let mut ratio = 1.0;
     for (i, v) in join.light.iter().enumerate().rev() {
-        ratio *= f64::from(other(join.light, join.light_other, i)) / f64::from(v.own);
+        let eye = other(join.light, join.light_other, i);
+        sum += merge(i, ratio, eye);
+        ratio *= f64::from(eye) / f64::from(v.own);
         if ratio == 0.0 {
             break;
         }
-        sum += share(i, ratio);
+        sum += connection(i, ratio);
     }
 
     // More and more of them: s + 1, s + 2 … n − 1; the lens itself is never met.
@@ -121,7 +172,7 @@ pub fn weight(join: &Join<'_>, strategies: &Strategies) -> f32 {
         if ratio == 0.0 {
             break;
         }
-        sum += share(n - i, ratio);
+        sum += merge(n - 1 - i, ratio, v.own) + connection(n - i, ratio);
     }
     if own == 0.0 { 0.0 } else { (own / sum) as f32 }
 }

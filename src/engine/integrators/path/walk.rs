@@ -66,6 +66,17 @@ impl Walk {
             }),
         }
     }
+
+    /// Russian roulette after `from` events with the random number `u`; false if the walk ends.
+    /// Survival divides the throughput and enters no weight.
+    pub fn survives(&mut self, from: u32, u: f32) -> bool {
+        if self.depth <= from {
+            return !self.throughput.is_black();
+        }
+        let survival = (self.throughput.max_component() * self.eta2).min(MAX_SURVIVAL);
+        self.throughput *= 1.0 / survival;
+        u < survival
+    }
 }
 
 struct Scattered {
@@ -129,14 +140,7 @@ impl RayIntegrator for PathTracer {
                 return;
             }
 
-            // Russian roulette: survival divides the throughput and enters no weight.
-            if walk.depth > self.roulette {
-                let survival = (walk.throughput.max_component() * walk.eta2).min(MAX_SURVIVAL);
-                if roulette >= survival {
-                    return;
-                }
-                walk.throughput *= 1.0 / survival;
-            } else if walk.throughput.is_black() {
+            if !walk.survives(self.roulette, roulette) {
                 return;
             }
             ray = si.spawn_ray(sample.wi);

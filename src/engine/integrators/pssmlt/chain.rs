@@ -96,7 +96,7 @@ impl Source {
         brought.film = film;
         stats.samples += 1;
         self.estimator
-            .sample(cx, (film, lens), (eye, light), work, brought, stats);
+            .sample(cx, (film, lens), (eye, light), None, work, brought, stats);
         stats.non_finite += brought.non_finite;
     }
 

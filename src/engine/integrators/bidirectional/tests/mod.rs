@@ -1,211 +1,24 @@
-//! The weights of all strategies against densities computed apart, vertex by vertex, from the
-//! finished path: no recursion, no ratio, and delta events by a rule of their own.
+//! The weights of all strategies against densities computed apart from the finished path.
+
+mod full_path;
+mod numbers;
+mod scenes;
 
 use glam::{Vec2, Vec3A};
 
+use self::full_path::Full;
+use self::scenes::{slit, things};
 use super::*;
-use crate::engine::bsdf::Bsdf;
+use crate::engine::bsdf::Transport;
 use crate::engine::camera::Camera;
 use crate::engine::event::Event;
-use crate::engine::geometry::Ray;
 use crate::engine::integrators::{Cancel, Pass, RenderStats};
-use crate::engine::io::scene_file;
 use crate::engine::light::LightSample;
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
 use crate::engine::plan::{LayerSettings, RenderPlan};
 use crate::engine::sampling::{IndependentSampler, Sampler, Stream};
 use crate::engine::scene::Scene;
-
-const GLASS: f32 = 1.5;
-
-/// A scene of every kind of material; `rest` is its TOML without them.
-fn scene(rest: &str) -> Scene {
-    let text = format!(
-        r#"
-        {rest}
-        [materials]
-        white = {{ type = "diffuse", reflectance = [0.9, 0.8, 0.7] }}
-        glass = {{ type = "dielectric", ior = {GLASS} }}
-        coat = {{ type = "plastic", diffuse_reflectance = [0.7, 0.2, 0.2], ior = 1.5 }}
-        metal = {{ type = "ggx_conductor", specular_reflectance = [0.9, 0.9, 0.9], alpha = 0.2 }}
-        frost = {{ type = "rough_dielectric", ior = 1.5, alpha = 0.3 }}
-        satin = {{ type = "mix", materials = ["white", "metal"], weight = 0.5 }}
-        "#
-    );
-    let desc = scene_file::from_toml(&text, "test.toml").unwrap_or_else(|e| panic!("{e}"));
-    Scene::build(&desc).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// Every kind of event, in a room or in the open, under a lamp (a sphere) and other lights.
-fn things(room: &str, lamp: &str, lights: &str, lens: &str) -> Scene {
-    scene(&format!(
-        r#"
-        camera = {{ position = [0, 0.3, 3.5], target = [0, 0, 0], vfov_deg = 50, width = 32, height = 24 {lens} }}
-        spheres = [
-            {room} {lamp}
-            {{ center = [0, -4, 0], radius = 3, material = "white" }},
-            {{ center = [-1.1, 0, 0], radius = 0.9, material = "glass" }},
-            {{ center = [0.9, -0.3, 0.4], radius = 0.7, material = "coat" }},
-            {{ center = [0.2, 0.7, -1.2], radius = 0.6, material = "satin" }},
-            {{ center = [1.3, 1, -0.6], radius = 0.5, material = "frost" }},
-            {{ center = [0.3, -0.7, 1.3], radius = 0.2, material = "metal" }},
-        ]
-        lights = [{lights}]
-        "#
-    ))
-}
-
-/// Two spheres that all but touch; eye and light look into the gap.
-fn slit(material: &str) -> Scene {
-    scene(&format!(
-        r#"
-        camera = {{ position = [0, 0.3, 3.5], target = [0, 0, 0], vfov_deg = 0.05, width = 32, height = 24 }}
-        spheres = [
-            {{ center = [-1.00001, 0, 0], radius = 1, material = "white" }},
-            {{ center = [1.00001, 0, 0], radius = 1, material = "{material}" }},
-        ]
-        lights = [{{ type = "spot", position = [0, -0.3, 3], direction = [0, 0.1, -1], intensity = [5, 5, 5], angle_deg = 0.02 }}]
-        "#
-    ))
-}
-
-/// A complete path, from the light to the lens.
-struct Full<'a> {
-    pass: &'a Pass<'a>,
-    end: LightEnd,
-    /// v₁ … vₙ₋₂ and the event at each.
-    inner: Vec<(&'a Vertex, Event)>,
-    /// Unit directions from each vertex to the next.
-    edges: Vec<Vec3A>,
-    lens: Vec3A,
-}
-
-impl Full<'_> {
-    fn n(&self) -> usize {
-        self.inner.len() + 2
-    }
-
-    /// Index of refraction on the side of a surface that `w` points to.
-    fn index(&self, v: &Vertex, w: Vec3A) -> f64 {
-        let name = &self.pass.scene.material_names[v.si.material as usize];
-        let inside = w.dot(v.si.n_g) < 0.0;
-        if name == "glass" && inside {
-            f64::from(GLASS)
-        } else {
-            1.0
-        }
-    }
-
-    /// Density in 1/sr of drawing `to` at vertex `i`, coming from `from`. The delta of a specular
-    /// event is one of the measure n² cosθ dω, the same for both ways, and left out.
-    fn pdf_dir(&self, i: usize, from: Vec3A, to: Vec3A) -> f64 {
-        let (v, event) = self.inner[i - 1];
-        let bsdf: &Bsdf = &v.bsdf;
-        if event.is_delta() {
-            let basis = self.index(v, to).powi(2) * f64::from(v.si.n_s.dot(to).abs());
-            return f64::from(bsdf.event_probability(event, from)) * basis;
-        }
-        f64::from(bsdf.pdf(event, from, to))
-    }
-
-    fn point(&self, i: usize) -> Vec3A {
-        match i {
-            0 => self.end.p,
-            _ if i + 1 == self.n() => self.lens,
-            _ => self.inner[i - 1].0.si.p,
-        }
-    }
-
-    fn normal(&self, i: usize) -> Option<Vec3A> {
-        match i {
-            0 => self.end.n,
-            _ if i + 1 == self.n() => Some(self.pass.camera.forward()),
-            _ => Some(self.inner[i - 1].0.si.n_g),
-        }
-    }
-
-    /// Area density of vertex `to`, next to `from`.
-    fn area(&self, pdf_dir: f64, from: usize, to: usize) -> f64 {
-        let w = self.edges[from.min(to)].as_dvec3();
-        let distance2 = (self.point(from).as_dvec3() - self.point(to).as_dvec3()).length_squared();
-        let cos = self.normal(to).map_or(1.0, |n| n.as_dvec3().dot(w).abs());
-        pdf_dir * cos / distance2
-    }
-
-    /// The density of the strategy (s, n − s).
-    fn density(&self, s: usize) -> f64 {
-        let (n, scene) = (self.n(), self.pass.scene);
-        let light = scene.lights.get(self.end.id);
-        let open = |v: usize| v == 0 || v + 1 == n || !self.inner[v - 1].1.is_delta();
-        let possible = match s {
-            0 => !light.is_delta(),
-            1 if n == 2 => !light.is_delta() && !light.is_infinite(),
-            _ => open(s - 1) && open(s),
-        };
-        if !possible {
-            return 0.0;
-        }
-        let (pdf_pos, pdf_dir) = light.pdf_le(self.end.n, self.edges[0]);
-        let pmf = f64::from(scene.lights.pmf(self.end.id));
-        let mut p = 1.0;
-        for i in 0..s {
-            p *= match i {
-                0 if light.is_infinite() => pmf * f64::from(pdf_dir),
-                0 if s == 1 && n > 2 && !light.is_delta() => {
-                    let hit = self.light_point();
-                    let li = light.pdf_li(self.point(1), -self.edges[0], Some(&hit));
-                    pmf * self.area(f64::from(li), 1, 0)
-                }
-                0 => pmf * f64::from(pdf_pos),
-                1 if light.is_infinite() => {
-                    let cos = self.normal(1).map_or(1.0, |n| n.dot(self.edges[0]).abs());
-                    f64::from(pdf_pos) * f64::from(cos)
-                }
-                1 => self.area(f64::from(pdf_dir), 0, 1),
-                _ => {
-                    let out = self.pdf_dir(i - 1, -self.edges[i - 2], self.edges[i - 1]);
-                    self.area(out, i - 1, i)
-                }
-            };
-        }
-        let first = Ray::new(self.lens, -self.edges[n - 2]);
-        let we = self.pass.camera.pdf_we(&first);
-        for i in (s..n).rev() {
-            p *= if i == n - 1 {
-                f64::from(we.0)
-            } else {
-                let out = if i == n - 2 {
-                    f64::from(we.1)
-                } else {
-                    self.pdf_dir(i + 1, self.edges[i + 1], -self.edges[i])
-                };
-                if i == 0 && light.is_infinite() {
-                    out
-                } else {
-                    self.area(out, i + 1, i)
-                }
-            };
-        }
-        p
-    }
-
-    fn light_point(&self) -> crate::engine::geometry::SurfaceInteraction {
-        let n = self.end.n.unwrap_or(Vec3A::Z);
-        crate::engine::geometry::SurfaceInteraction {
-            p: self.end.p,
-            p_error: Vec3A::ZERO,
-            n_g: n,
-            n_s: n,
-            uv: Vec2::ZERO,
-            wo: self.edges[0],
-            t: 0.0,
-            material: 0,
-            light: Some(self.end.id),
-            prim: 0,
-        }
-    }
-}
 
 /// The weights that the strategies under test gave, in their order.
 #[derive(Default)]
@@ -345,7 +158,7 @@ impl Checker<'_> {
                 let found = run(&mut |c| c.shadow(&eye, t, id, pmf, &sample));
                 let end = self.shadow_end(id, z, &sample);
                 let events = z.bsdf.non_delta_events().filter(|e| {
-                    let transport = crate::engine::bsdf::Transport::Radiance;
+                    let transport = Transport::Radiance;
                     !z.bsdf.eval(*e, z.si.wo, sample.wi, transport).is_black()
                 });
                 for ((technique, weight), event) in found.into_iter().zip(events) {
@@ -366,7 +179,7 @@ impl Checker<'_> {
             for s in 2..=light.len() {
                 let y = light.vertex(s - 1);
                 let found = run(&mut |c| c.connect((&light, &start), s, &eye, t));
-                let wi = (y.si.p - z.si.p).normalize();
+                let wi = toward(z.si.p, y.si.p);
                 let mut pairs = Vec::new();
                 use crate::engine::bsdf::Transport::{Importance, Radiance};
                 for e in z.bsdf.non_delta_events() {
@@ -404,7 +217,7 @@ impl Checker<'_> {
             };
             connector.join_lens((&light, &start), s, &lens, u);
             let events = y.bsdf.non_delta_events().filter(|e| {
-                let transport = crate::engine::bsdf::Transport::Importance;
+                let transport = Transport::Importance;
                 !y.bsdf.eval(*e, y.si.wo, sample.wi, transport).is_black()
             });
             for ((technique, weight), event) in record.0.into_iter().zip(events) {
@@ -451,8 +264,8 @@ fn full<'f>(
     // The edge between the two parts.
     match (first, from.last(), eye_part.first()) {
         (Some(first), ..) => edges.push(first),
-        (None, Some((y, _)), Some(z)) => edges.push((z.si.p - y.si.p).normalize()),
-        (None, Some((y, _)), None) => edges.push((lens - y.si.p).normalize()),
+        (None, Some((y, _)), Some(z)) => edges.push(-toward(z.si.p, y.si.p)),
+        (None, Some((y, _)), None) => edges.push(toward(y.si.p, lens)),
         (None, None, _) => unreachable!("a path begins somewhere"),
     }
     for (k, v) in eye_part.into_iter().enumerate() {
@@ -467,6 +280,13 @@ fn full<'f>(
         edges,
         lens,
     }
+}
+
+/// Unit direction from `a` to `b`, rounded as connections round it: microfacets at grazing angles
+/// magnify a last digit.
+fn toward(a: Vec3A, b: Vec3A) -> Vec3A {
+    let to = b - a;
+    to / to.length_squared().sqrt()
 }
 
 fn check_scene(scene: &Scene, heuristic: Heuristic, samples: u64, max_depth: Option<u32>) -> Tally {
@@ -557,26 +377,4 @@ fn weights_hold_for_vertices_next_to_each_other() {
         let tally = check_scene(&slit(material), Heuristic::Balance, 3000, Some(8));
         assert!(tally.close > 50, "{tally:?}");
     }
-}
-
-/// Light tracing never asks for the lens density: one strategy needs no weight.
-#[test]
-fn a_strategy_alone_has_weight_one() {
-    let lens = Density {
-        own: 1.0,
-        other: 0.0,
-        connectible: true,
-    };
-    let light = [lens; 3];
-    let join = Join {
-        light: &light,
-        eye: &[lens],
-        light_other: [0.3, 2.0],
-        eye_other: [0.0; 2],
-        shadow_ratio: 5.0,
-        zero_size: false,
-        infinite: false,
-    };
-    assert_eq!(weight(&join, &Strategies::lens_alone()), 1.0);
-    assert!(weight(&join, &Strategies::all(Heuristic::Power)) < 1.0);
 }
