@@ -208,10 +208,8 @@ mod tests {
             let tiles = Tiles::new(size);
             for t in 0..tiles.len() {
                 for (place, p) in tiles.pixels(t) {
-                    for plane in 0..3 {
-                        let found = buffer.tile(t)[plane][place];
-                        assert_eq!(found, expected[(p.y * 19 + p.x) as usize][plane]);
-                    }
+                    let found: Vec<_> = buffer.tile(t).iter().map(|plane| plane[place]).collect();
+                    assert_eq!(found, expected[(p.y * 19 + p.x) as usize]);
                 }
             }
             buffer.clear();

@@ -198,13 +198,9 @@ mod tests {
         let mut layers = Vec::new();
         film.resolve(&plan.labels, &mut layers);
         for (i, whole) in layers[0].pixels.iter().enumerate() {
-            for c in 0..3 {
+            for (c, whole) in whole.iter().enumerate() {
                 let sum: f32 = images.iter().map(|t| t.weighted[i][c]).sum();
-                assert!(
-                    (sum - whole[c]).abs() < 1e-4 * whole[c],
-                    "{sum} {}",
-                    whole[c]
-                );
+                assert!((sum - whole).abs() < 1e-4 * whole, "{sum} {whole}");
             }
         }
 

@@ -102,7 +102,7 @@ fn number(ui: &mut Ui, spec: &ParamSpec, lo: f64, hi: f64, params: &Params) -> O
 
 /// A line of text; what cannot be read stays in it, marked, until it is mended.
 fn words(ui: &mut Ui, spec: &ParamSpec, params: &Params) -> Option<String> {
-    let id = ui.id().with(spec.name);
+    let id = ui.scope_id().with(spec.name);
     let stored = params.text(spec.name);
     let typed = ui.data_mut(|d| d.get_temp::<String>(id));
     let mut text = typed.unwrap_or_else(|| stored.clone());

@@ -93,6 +93,11 @@ impl Subpath {
         self.densities.len()
     }
 
+    /// Never true once a walk has begun: its end is the first vertex.
+    pub fn is_empty(&self) -> bool {
+        self.densities.is_empty()
+    }
+
     /// Vertex `i`, from 1.
     #[inline]
     pub fn vertex(&self, i: usize) -> &Vertex {

@@ -67,8 +67,10 @@ impl Full<'_> {
 
     /// Area density of vertex `to`, next to `from`.
     fn area(&self, pdf_dir: f64, from: usize, to: usize) -> f64 {
-        let w = self.edges[from.min(to)].as_dvec3();
-        let distance2 = (self.point(from).as_dvec3() - self.point(to).as_dvec3()).length_squared();
+        // From the positions: next to each other they are rounded, and the direction sampled
+        // between them is another one.
+        let between = self.point(to).as_dvec3() - self.point(from).as_dvec3();
+        let (w, distance2) = (between.normalize(), between.length_squared());
         let cos = self.normal(to).map_or(1.0, |n| n.as_dvec3().dot(w).abs());
         pdf_dir * cos / distance2
     }

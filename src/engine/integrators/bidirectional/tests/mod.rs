@@ -84,7 +84,7 @@ impl Checker<'_> {
         );
     }
 
-    fn walk_events<'v>(path: &'v Subpath, n: usize) -> Vec<(&'v Vertex, Option<Event>)> {
+    fn walk_events(path: &Subpath, n: usize) -> Vec<(&Vertex, Option<Event>)> {
         (1..n)
             .map(|i| (path.vertex(i), path.vertex(i).event))
             .collect()
@@ -314,7 +314,6 @@ fn check_scene(scene: &Scene, heuristic: Heuristic, samples: u64, max_depth: Opt
     for index in 0..samples {
         checker.sample(index);
     }
-    println!("{:?}", checker.tally);
     checker.tally
 }
 
