@@ -307,12 +307,11 @@ fn gap(frame: &Frame, layers: std::ops::Range<usize>) -> f64 {
     let mean = support::agreement::mean(&frame.layers[0].pixels);
     let mut worst: f64 = 0.0;
     for (i, whole) in frame.layers[0].pixels.iter().enumerate() {
-        for c in 0..3 {
-            let sum: f64 = layers
+        for (c, whole) in whole.map(f64::from).into_iter().enumerate() {
+            let values = layers
                 .clone()
-                .map(|l| f64::from(frame.layers[l].pixels[i][c]))
-                .sum();
-            worst = worst.max((sum - f64::from(whole[c])).abs() / mean.max(f64::from(whole[c])));
+                .map(|l| f64::from(frame.layers[l].pixels[i][c]));
+            worst = worst.max((values.sum::<f64>() - whole).abs() / mean.max(whole));
         }
     }
     worst

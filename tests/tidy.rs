@@ -165,6 +165,7 @@ fn modules_use_only_what_stands_left_of_them() {
         &["light", "camera"],
         &["scene"],
         &["path"],
+        &["photon"],
         &["plan"],
         &["film", "integrators"],
         &["session"],

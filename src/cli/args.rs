@@ -164,13 +164,20 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Time from a change of camera to the first picture.
     FirstFrame(FirstFrameArgs),
+    /// What a user of the window waits for: camera to picture, input to answer of the panels.
+    #[cfg(feature = "viewer")]
+    Latency(FirstFrameArgs),
+    /// Noise and bias of photon mapping, apart and without a reference.
+    NoiseBias(BenchNoiseBiasArgs),
+    /// Time to build photon maps, and queries a second where eye rays land.
+    Photons(BenchPhotonsArgs),
     /// Rays a second on one mesh, single-threaded.
     Rays(BenchRaysArgs),
     /// Error against time on scenes with references, single-threaded.
     Scenes(BenchScenesArgs),
 }
 
-/// Arguments of `bench first-frame`.
+/// Arguments of `bench first-frame` and `bench latency`.
 #[derive(Debug, Args)]
 pub struct FirstFrameArgs {
     /// Scene: an id or a file.
@@ -185,6 +192,46 @@ pub struct FirstFrameArgs {
     /// Threads; 0 is one a core.
     #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench noise-bias`.
+#[derive(Debug, Args)]
+pub struct BenchNoiseBiasArgs {
+    /// Scene: an id or a file.
+    #[arg(long, default_value = super::scene::DEFAULT_SCENE)]
+    pub scene: String,
+    /// Parameter of photon mapping; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Independent maps, at least two.
+    #[arg(long, value_name = "N", default_value = "16", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub maps: u64,
+    /// Threads; 0 is one a core.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench photons`.
+#[derive(Debug, Args)]
+pub struct BenchPhotonsArgs {
+    /// Scene: an id or a file.
+    #[arg(long, default_value = super::scene::DEFAULT_SCENE)]
+    pub scene: String,
+    /// Photons of each map.
+    #[arg(long, value_name = "N,N…", value_delimiter = ',', default_value = "100000,1000000,10000000", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub photons: Vec<u64>,
+    /// Photons of a query.
+    #[arg(long, value_name = "N", default_value = "50", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub nearest: u64,
+    /// Points that eye rays land on; each is a query.
+    #[arg(long, value_name = "N", default_value = "100000", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub queries: u64,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

@@ -5,6 +5,7 @@
 
 mod args;
 mod bench;
+pub mod bench_photons;
 pub mod bench_rays;
 mod compare;
 mod error;
@@ -24,7 +25,7 @@ use args::{Cli, Command};
 use error::CliError;
 
 #[cfg(feature = "viewer")]
-use crate::viewer::source::SceneSource;
+use crate::viewer::opening::Opening;
 
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
@@ -82,6 +83,11 @@ fn window(_scene: Option<&str>) -> Result<(), CliError> {
 /// Opens the window.
 #[cfg(feature = "viewer")]
 fn window(scene: Option<&str>) -> Result<(), CliError> {
-    let source = SceneSource::named(scene.unwrap_or(scene::DEFAULT_SCENE));
-    crate::viewer::run(source).map_err(|error| CliError::Failed(error.to_string()))
+    let name = scene.unwrap_or(scene::DEFAULT_SCENE);
+    let opening = Opening::named(name).map_err(CliError::Usage)?;
+    let mut read = opening.source.read();
+    if let Err(sentence) = &mut read.desc {
+        return Err(CliError::Usage(std::mem::take(sentence)));
+    }
+    crate::viewer::run(opening, read).map_err(|error| CliError::Failed(error.to_string()))
 }

@@ -1,8 +1,8 @@
 //! The renderer core. It knows nothing of windows, prints nothing and reads no files outside `io`.
 //!
 //! A module uses only what stands before it in this list:
-//! math < sampling < geometry < {bsdf, light, camera} < scene < film < path < integrators <
-//! session < measure. `io` uses `scene::desc` only.
+//! math < sampling < geometry < {bsdf, light, camera} < scene < path < photon < plan <
+//! {film, integrators} < session < measure. `io` uses `scene::desc` only.
 
 pub mod bsdf;
 pub mod camera;
@@ -15,6 +15,7 @@ pub mod light;
 pub mod math;
 pub mod measure;
 pub mod path;
+pub mod photon;
 pub mod plan;
 pub mod sampling;
 pub mod scene;

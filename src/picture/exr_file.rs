@@ -105,6 +105,16 @@ pub fn read(path: &Path) -> Result<Picture, Error> {
     })
 }
 
+/// The text `name` of a file, if it is an OpenEXR file that has one.
+pub fn read_text(path: &Path, name: &str) -> Option<String> {
+    let meta = exr::meta::MetaData::read_from_file(path, false).ok()?;
+    let header = meta.headers.first()?;
+    let own = header.own_attributes.other.iter();
+    let mut all = own.chain(&header.shared_attributes.other);
+    all.find(|(key, _)| utf8(key) == name)
+        .and_then(|(_, value)| text_of(value))
+}
+
 /// The whole first, then the components, then the rest in the order of their names.
 fn place(label: &str) -> (usize, String) {
     let index = labels().position(|known| known == label);

@@ -14,9 +14,13 @@ use winit::window::{Fullscreen, Window, WindowId};
 use super::ViewError;
 use super::gpu::painter;
 use super::loader::Loader;
+use super::opening::Opening;
 use super::panels;
+use super::preferences::{self, Preferences};
 use super::rendering::Rendering;
-use super::source::SceneSource;
+use super::source::Read;
+use super::thumbnails::{self, Thumbnail};
+use super::watch::Watch;
 use super::workspace::{Request, Workspace};
 
 /// What wakes the event loop from other threads.
@@ -32,6 +36,8 @@ pub enum Wake {
     Captured(Arc<egui::ColorImage>),
     /// The graphics device is gone.
     DeviceLost,
+    /// A picture of the gallery.
+    Thumbnail(Thumbnail),
 }
 
 /// The program around the workspace.
@@ -43,6 +49,8 @@ pub struct App {
     context: egui::Context,
     shown: Option<Shown>,
     repaint_at: Option<Instant>,
+    watch: Watch,
+    wants_thumbnails: bool,
     capture: bool,
     pub(super) clipboard: Option<arboard::Clipboard>,
     /// Why the window could not open.
@@ -57,11 +65,15 @@ struct Shown {
 }
 
 impl App {
-    /// Starts to load `source`.
+    /// Starts to load the scene of `opening`, of which `read` was read already.
     ///
     /// # Errors
     /// If the system refuses to start threads.
-    pub fn new(source: SceneSource, proxy: EventLoopProxy<Wake>) -> Result<Self, ViewError> {
+    pub fn new(
+        opening: Opening,
+        read: Read,
+        proxy: EventLoopProxy<Wake>,
+    ) -> Result<Self, ViewError> {
         // An event loop that is gone no longer waits.
         let wake = |proxy: &EventLoopProxy<Wake>, what: fn() -> Wake| {
             let proxy = proxy.clone();
@@ -71,34 +83,40 @@ impl App {
         let context = egui::Context::default();
         panels::apply_style(&context);
         let mut app = Self {
-            workspace: Workspace::new(source.clone()),
+            workspace: Workspace::new(opening.source.clone()),
             loader: Loader::new(wake(&proxy, || Wake::Loaded)),
             proxy,
             rendering,
             context,
             shown: None,
             repaint_at: None,
+            watch: Watch::new(Vec::new()),
+            wants_thumbnails: true,
             capture: false,
             clipboard: None,
             error: None,
         };
-        app.load(source, false);
+        if let Some(file) = preferences::file() {
+            app.workspace.preferences = Preferences::load(&file);
+        }
+        app.load(opening, Some(read), false);
         Ok(app)
     }
 
     /// Starts to read a scene.
-    pub(super) fn load(&mut self, source: SceneSource, again: bool) {
-        self.workspace.loading = Some(source.clone());
-        if let Err(error) = self.loader.start(source, again) {
+    fn load(&mut self, opening: Opening, read: Option<Read>, again: bool) {
+        self.workspace.loading = Some(opening.source.clone());
+        if let Err(error) = self.loader.start(opening, read, again) {
             self.workspace.loading = None;
             self.workspace.notices.set_error("scene", error);
         }
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<Shown, ViewError> {
+        let [width, height] = self.workspace.preferences.window;
         let attributes = Window::default_attributes()
             .with_title("lightscope")
-            .with_inner_size(LogicalSize::new(1280.0, 800.0))
+            .with_inner_size(LogicalSize::new(width, height))
             .with_min_inner_size(LogicalSize::new(320.0, 240.0));
         let window = event_loop
             .create_window(attributes)
@@ -144,11 +162,21 @@ impl App {
     fn take_news(&mut self) {
         if let Some(loaded) = self.loader.finished() {
             self.workspace.loading = None;
+            let same = loaded.opening.source == self.workspace.model.source;
             match loaded.scene {
-                Ok(scene) => self
-                    .workspace
-                    .show_scene(loaded.source, scene, loaded.again),
-                Err(sentence) => self.workspace.notices.set_error("scene", sentence),
+                Ok(scene) => {
+                    self.watch = Watch::new(loaded.files);
+                    let (opening, again) = (loaded.opening, loaded.again);
+                    self.workspace
+                        .show_scene(opening, scene, again, loaded.hash);
+                }
+                Err(sentence) => {
+                    // The old scene stays; it is read again when one of its files is mended.
+                    if same {
+                        self.watch = Watch::new(loaded.files);
+                    }
+                    self.workspace.notices.set_error("scene", sentence);
+                }
             }
             self.set_title();
         }
@@ -206,6 +234,7 @@ impl App {
             painter::wait(&shown.painter);
         }
         self.carry_out(event_loop);
+        self.make_thumbnails();
         self.follow();
     }
 
@@ -224,10 +253,21 @@ impl App {
     }
 
     fn carry_out(&mut self, event_loop: &ActiveEventLoop) {
-        for request in std::mem::take(&mut self.workspace.requests) {
+        let requests = std::mem::take(&mut self.workspace.requests);
+        // While a lower resolution stands in for the picture, what takes it away waits.
+        let (waiting, due): (Vec<Request>, Vec<Request>) = requests
+            .into_iter()
+            .partition(|request| request.needs_picture() && self.workspace.is_coarse());
+        self.workspace.requests = waiting;
+        for request in due {
             match request {
-                Request::Load(source) => self.load(source, false),
-                Request::Reload => self.load(self.workspace.model.source.clone(), true),
+                Request::Load(source) => self.load(Opening::scene(source), None, false),
+                Request::Open(path) => match Opening::file(&path) {
+                    Ok(opening) => self.load(opening, None, false),
+                    Err(sentence) => self.workspace.notices.set_error("scene", sentence),
+                },
+                Request::Reload => self.reload(),
+                Request::SaveAs(path) => self.save_as(path),
                 Request::Save(format) => self.save(format),
                 Request::SaveWindow => {
                     self.capture = true;
@@ -237,6 +277,19 @@ impl App {
                 Request::FullScreen => self.toggle_full_screen(),
                 Request::Quit => event_loop.exit(),
             }
+        }
+    }
+
+    fn reload(&mut self) {
+        let source = self.workspace.model.source.clone();
+        self.load(Opening::scene(source), None, true);
+    }
+
+    /// Renders the gallery's pictures when they are wanted first.
+    fn make_thumbnails(&mut self) {
+        if self.workspace.gallery && std::mem::take(&mut self.wants_thumbnails) {
+            let proxy = self.proxy.clone();
+            thumbnails::start(move |t| proxy.send_event(Wake::Thumbnail(t)).is_ok());
         }
     }
 
@@ -292,6 +345,7 @@ impl ApplicationHandler<Wake> for App {
             Wake::Saved(Err(sentence)) => self.workspace.notices.set_error("save", sentence),
             Wake::Captured(image) => self.save_window(&image),
             Wake::DeviceLost => self.recover(event_loop),
+            Wake::Thumbnail(thumbnail) => self.workspace.thumbnails.push(thumbnail),
         }
         self.request_redraw();
     }
@@ -305,6 +359,8 @@ impl ApplicationHandler<Wake> for App {
                 let sides = std::num::NonZeroU32::new(size.width)
                     .zip(std::num::NonZeroU32::new(size.height));
                 if let Some((width, height)) = sides {
+                    let points = size.to_logical(shown.window.scale_factor());
+                    self.workspace.preferences.window = [points.width, points.height];
                     let root = egui::ViewportId::ROOT;
                     shown.painter.on_window_resized(root, width, height);
                 }
@@ -322,9 +378,20 @@ impl ApplicationHandler<Wake> for App {
             self.repaint_at = None;
             self.request_redraw();
         }
-        event_loop.set_control_flow(match self.repaint_at {
+        if self.watch.changed(Instant::now()) {
+            self.reload();
+            self.request_redraw();
+        }
+        let times = [self.repaint_at, self.watch.next_look()];
+        event_loop.set_control_flow(match times.into_iter().flatten().min() {
             Some(at) => ControlFlow::WaitUntil(at),
             None => ControlFlow::Wait,
         });
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        if let Some(file) = preferences::file() {
+            self.workspace.preferences.save(&file);
+        }
     }
 }

@@ -6,12 +6,18 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 /// An action of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
+    /// Ask for a scene, a state or a screenshot.
+    Open,
+    /// Show the embedded scenes.
+    Gallery,
     /// Read the scene again.
     Reload,
     /// Save the picture as PNG under a new name.
     SavePng,
     /// Save all layers as EXR under a new name.
     SaveExr,
+    /// Ask for a name and save.
+    SaveAs,
     /// Save the whole window as PNG.
     SaveWindow,
     /// Copy the picture to the clipboard.
@@ -40,6 +46,10 @@ pub enum Command {
     AutoExposure,
     /// The next tone map.
     NextToneMap,
+    /// Show the values under the cursor.
+    Inspector,
+    /// The whole picture again, after a look at its pixels.
+    ZoomOut,
     /// Show or hide the panel.
     Panel,
     /// Light or dark.
@@ -95,10 +105,28 @@ const fn bind(
 /// All commands. Where one key is part of another's, the longer one stands first.
 pub const TABLE: &[Binding] = &[
     bind(
+        Command::Open,
+        &[ctrl(Key::O)],
+        "Open…",
+        "Open a scene, a state or a screenshot.",
+    ),
+    bind(
+        Command::Gallery,
+        &[key(Key::G)],
+        "Gallery",
+        "Choose among the scenes within the program by their pictures.",
+    ),
+    bind(
         Command::Reload,
         &[key(Key::F5), ctrl(Key::R)],
         "Reload",
         "Read the scene again from its file.",
+    ),
+    bind(
+        Command::SaveAs,
+        &[ctrl_shift(Key::S)],
+        "Save as…",
+        "Choose name and format (PNG, EXR, state) and save.",
     ),
     bind(
         Command::SavePng,
@@ -213,6 +241,18 @@ pub const TABLE: &[Binding] = &[
         &[key(Key::T)],
         "Next tone map",
         "Try the next tone map.",
+    ),
+    bind(
+        Command::Inspector,
+        &[key(Key::I)],
+        "Inspector",
+        "Show what lies under the cursor: radiance, samples, material, normal, depth.",
+    ),
+    bind(
+        Command::ZoomOut,
+        &[key(Key::Z)],
+        "Zoom out",
+        "Show the whole picture again after Ctrl + wheel has magnified its pixels.",
     ),
     bind(
         Command::Panel,

@@ -53,26 +53,27 @@ fn bytes(display: &Display, exposure: f32, rgb: [f32; 3]) -> [u8; 3] {
 ///
 /// # Errors
 /// A sentence.
-pub fn png(frame: &Frame, model: &Model) -> Result<Vec<u8>, String> {
+pub fn png(frame: &Frame, model: &Model, state: String) -> Result<Vec<u8>, String> {
     let (size, pixels) = shown(frame, &model.display);
-    png_file::encode(size, &pixels, &texts(frame, model)).map_err(|error| error.to_string())
+    png_file::encode(size, &pixels, &texts(frame, model, state)).map_err(|error| error.to_string())
 }
 
 /// An EXR file of the whole and all layers.
 ///
 /// # Errors
 /// A sentence.
-pub fn exr(frame: &Frame, model: &Model) -> Result<Vec<u8>, String> {
+pub fn exr(frame: &Frame, model: &Model, state: String) -> Result<Vec<u8>, String> {
     let layers: Vec<(&str, &[[f32; 3]])> = frame
         .layers
         .iter()
         .map(|layer| (layer.label.as_str(), layer.pixels.as_slice()))
         .collect();
-    exr_file::encode(frame.size, &layers, &texts(frame, model)).map_err(|error| error.to_string())
+    exr_file::encode(frame.size, &layers, &texts(frame, model, state))
+        .map_err(|error| error.to_string())
 }
 
 /// What a file says about its origin.
-fn texts(frame: &Frame, model: &Model) -> Vec<(String, String)> {
+fn texts(frame: &Frame, model: &Model, state: String) -> Vec<(String, String)> {
     let settings = &model.settings;
     let parameters: Vec<String> = settings
         .params
@@ -91,6 +92,7 @@ fn texts(frame: &Frame, model: &Model) -> Vec<(String, String)> {
         ("seed", settings.seed.to_string()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("error", error),
+        ("state", state),
     ]
     .map(|(name, text)| (format!("lightscope:{name}"), text))
     .into();

@@ -1,7 +1,7 @@
 //! Saving and copying: the part of the program that touches files and the clipboard.
 
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::UVec2;
@@ -9,7 +9,9 @@ use glam::UVec2;
 use super::app::{App, Wake};
 use super::export;
 use super::saver::{fresh_name, save};
+use super::state::{KEY, State};
 use super::workspace::Format;
+use crate::engine::film::Frame;
 use crate::picture::png_file;
 
 impl App {
@@ -21,11 +23,49 @@ impl App {
                 .say("There is no picture to save yet.");
             return;
         };
+        let extension = match format {
+            Format::Png => "png",
+            Format::Exr => "exr",
+        };
+        let path = fresh_name(Path::new(""), &self.workspace.proposed_stem(), extension);
+        self.write_picture(path, format, frame);
+    }
+
+    /// Saves to a file whose name says the format: a picture, or else the state alone.
+    pub(super) fn save_as(&mut self, path: PathBuf) {
+        let Some(frame) = self.workspace.frame.clone() else {
+            self.workspace
+                .notices
+                .say("There is no picture to save yet.");
+            return;
+        };
+        let extension = path.extension().map(|e| e.to_ascii_lowercase());
+        match extension.as_ref().and_then(|e| e.to_str()) {
+            Some("png") => self.write_picture(path, Format::Png, frame),
+            Some("exr") => self.write_picture(path, Format::Exr, frame),
+            _ => {
+                let json = self.state_of(&frame).to_json();
+                self.write(path, move || Ok(json.into_bytes()));
+            }
+        }
+    }
+
+    fn state_of(&self, frame: &Frame) -> State {
+        let workspace = &self.workspace;
+        State::new(
+            &workspace.model,
+            frame.full_size,
+            frame.passes,
+            &workspace.scene_hash,
+        )
+    }
+
+    fn write_picture(&self, path: PathBuf, format: Format, frame: Arc<Frame>) {
         let model = self.workspace.model.clone();
-        let stem = format!("{}-{}spp", model.source.short_name(), frame.passes);
+        let state = self.state_of(&frame).to_json();
         match format {
-            Format::Png => self.write(&stem, "png", move || export::png(&frame, &model)),
-            Format::Exr => self.write(&stem, "exr", move || export::exr(&frame, &model)),
+            Format::Png => self.write(path, move || export::png(&frame, &model, state)),
+            Format::Exr => self.write(path, move || export::exr(&frame, &model, state)),
         }
     }
 
@@ -33,23 +73,31 @@ impl App {
     pub(super) fn save_window(&mut self, image: &Arc<egui::ColorImage>) {
         let stem = format!("{}-window", self.workspace.model.source.short_name());
         let image = Arc::clone(image);
-        self.write(&stem, "png", move || {
+        let state = self
+            .workspace
+            .frame
+            .as_ref()
+            .map(|f| self.state_of(f).to_json());
+        let texts: Vec<(String, String)> = state
+            .into_iter()
+            .map(|state| (KEY.to_owned(), state))
+            .collect();
+        self.write(fresh_name(Path::new(""), &stem, "png"), move || {
             let [width, height] = image.size;
             let pixels: Vec<[u8; 3]> = image.pixels.iter().map(|p| [p.r(), p.g(), p.b()]).collect();
             let size = UVec2::new(width as u32, height as u32);
-            png_file::encode(size, &pixels, &[]).map_err(|error| error.to_string())
+            png_file::encode(size, &pixels, &texts).map_err(|error| error.to_string())
         });
     }
 
     fn write(
         &self,
-        stem: &str,
-        extension: &str,
+        path: PathBuf,
         bytes: impl FnOnce() -> Result<Vec<u8>, String> + Send + 'static,
     ) {
         let proxy = self.proxy.clone();
         let done = move |result| drop(proxy.send_event(Wake::Saved(result)));
-        save(fresh_name(Path::new(""), stem, extension), bytes, done);
+        save(path, bytes, done);
     }
 
     /// Copies the picture as it is shown.

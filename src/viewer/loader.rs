@@ -1,20 +1,26 @@
 //! Reading and preparing scenes beside the window.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use super::source::SceneSource;
+use super::opening::Opening;
+use super::source::{Read, SceneSource};
 use crate::engine::scene::Scene;
 
 /// What became of a request.
 pub struct Loaded {
-    /// The scene asked for.
-    pub source: SceneSource,
+    /// What was asked for.
+    pub opening: Opening,
     /// Whether it is the scene shown, read again.
     pub again: bool,
     /// The scene, or a sentence.
     pub scene: Result<Arc<Scene>, String>,
+    /// The files it is made of.
+    pub files: Vec<PathBuf>,
+    /// Hash of the scene file.
+    pub hash: String,
 }
 
 /// Loads one scene at a time; the newest request wins.
@@ -37,21 +43,33 @@ impl Loader {
         }
     }
 
-    /// Starts to load `source`, on a thread that nobody waits for.
+    /// Starts to load the scene of `opening`, on a thread that nobody waits for; `read` is what
+    /// was read of it already.
     ///
     /// # Errors
     /// A sentence if the system refuses to start a thread.
-    pub fn start(&mut self, source: SceneSource, again: bool) -> Result<(), String> {
+    pub fn start(
+        &mut self,
+        opening: Opening,
+        read: Option<Read>,
+        again: bool,
+    ) -> Result<(), String> {
         self.newest += 1;
         let (number, sender) = (self.newest, self.sender.clone());
         let wake = Arc::clone(&self.wake);
         let work = move || {
-            let scene = catch_unwind(AssertUnwindSafe(|| prepare(&source)))
-                .unwrap_or_else(|_| Err(format!("a bug stopped the reading of {source}")));
+            let source = &opening.source;
+            let (scene, files, hash) = catch_unwind(AssertUnwindSafe(|| prepare(source, read)))
+                .unwrap_or_else(|_| {
+                    let sentence = format!("a bug stopped the reading of {source}");
+                    (Err(sentence), Vec::new(), String::new())
+                });
             let loaded = Loaded {
-                source,
+                opening,
                 again,
                 scene,
+                files,
+                hash,
             };
             // A receiver that is gone no longer waits.
             let _ = sender.send((number, loaded));
@@ -71,9 +89,13 @@ impl Loader {
     }
 }
 
-fn prepare(source: &SceneSource) -> Result<Arc<Scene>, String> {
-    let desc = source.read()?;
-    Scene::build(&desc)
-        .map(Arc::new)
-        .map_err(|error| format!("{source}: {error}"))
+/// The scene, its files and its hash.
+fn prepare(
+    source: &SceneSource,
+    read: Option<Read>,
+) -> (Result<Arc<Scene>, String>, Vec<PathBuf>, String) {
+    let read = read.unwrap_or_else(|| source.read());
+    let build = |desc| Scene::build(&desc).map_err(|error| format!("{source}: {error}"));
+    let scene = read.desc.and_then(build).map(Arc::new);
+    (scene, read.files, read.hash)
 }

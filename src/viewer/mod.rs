@@ -7,6 +7,7 @@
 
 mod app;
 mod balance;
+pub mod browser;
 pub mod commands;
 pub mod display;
 mod export;
@@ -15,15 +16,21 @@ mod false_color;
 mod files;
 mod gpu;
 pub mod history;
+pub mod latency;
 mod loader;
 pub mod model;
 pub mod navigation;
 pub mod notices;
+pub mod opening;
 pub mod panels;
 pub mod picking;
+pub mod preferences;
 mod rendering;
 mod saver;
 pub mod source;
+pub mod state;
+pub mod thumbnails;
+mod watch;
 pub mod workspace;
 
 use std::fmt;
@@ -31,7 +38,8 @@ use std::fmt;
 use winit::event_loop::EventLoop;
 
 use app::{App, Wake};
-use source::SceneSource;
+use opening::Opening;
+use source::Read;
 
 /// Why there is no window.
 #[derive(Debug)]
@@ -65,15 +73,16 @@ impl fmt::Display for ViewError {
     }
 }
 
-/// Opens the window on `source` and returns when it is closed.
+/// Opens the window and returns when it is closed. `read` is what was read of the scene already,
+/// so that a wrong one was refused before there is a window.
 ///
 /// # Errors
 /// Without display or graphics driver.
-pub fn run(source: SceneSource) -> Result<(), ViewError> {
+pub fn run(opening: Opening, read: Read) -> Result<(), ViewError> {
     let event_loop = EventLoop::<Wake>::with_user_event()
         .build()
         .map_err(|_| ViewError::NoDisplay)?;
-    let mut app = App::new(source, event_loop.create_proxy())?;
+    let mut app = App::new(opening, read, event_loop.create_proxy())?;
     event_loop
         .run_app(&mut app)
         .map_err(|error| ViewError::Failed(format!("the window failed: {error}")))?;

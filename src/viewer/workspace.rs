@@ -1,28 +1,41 @@
 //! Everything the window knows, without threads, files or graphics: panels read and change it,
 //! the program around it carries out what it asks for.
 
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::UVec2;
+use glam::{UVec2, Vec2};
 
 use super::balance::Balance;
+use super::browser::{Browser, Purpose};
 use super::commands::Command;
 use super::display::{EXPOSURES, Shown};
 use super::exposure::auto_exposure;
-use super::gpu::Placement;
+use super::gpu::{Placement, picture_point};
 use super::history::History;
 use super::model::Model;
 use super::navigation;
 use super::notices::Notices;
+use super::opening::Opening;
+use super::preferences::Preferences;
 use super::source::SceneSource;
+use super::thumbnails::Thumbnail;
 use crate::engine::film::{Frame, ToneMap};
 use crate::engine::scene::Scene;
+
+/// Largest magnification: a pixel is then larger than its numbers.
+const MAX_ZOOM: f32 = 256.0;
 
 /// What the program around the workspace is asked to do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// Read a scene.
     Load(SceneSource),
+    /// Read a file: a scene, a state or a picture that holds one.
+    Open(PathBuf),
+    /// Save to a file whose name says the format.
+    SaveAs(PathBuf),
     /// Read the scene again.
     Reload,
     /// Save under a new name.
@@ -37,6 +50,13 @@ pub enum Request {
     Quit,
 }
 
+impl Request {
+    /// Whether it takes the picture away.
+    pub fn needs_picture(&self) -> bool {
+        matches!(self, Self::Save(_) | Self::SaveAs(_) | Self::Copy)
+    }
+}
+
 /// What is saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -44,6 +64,15 @@ pub enum Format {
     Png,
     /// Radiance and layers.
     Exr,
+}
+
+/// A button that was pressed on the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// The button.
+    pub button: egui::PointerButton,
+    /// Where the pointer is, in points.
+    pub at: egui::Pos2,
 }
 
 /// The state of the window.
@@ -72,16 +101,28 @@ pub struct Workspace {
     pub max_pixels: u64,
     /// The hand is on the camera.
     pub navigating: bool,
+    /// The button that moves the camera.
+    pub hold: Option<Hold>,
     /// The render stands still.
     pub paused: bool,
     /// How the picture lies in its area.
     pub placement: Placement,
-    /// The panel is shown.
-    pub panel: bool,
     /// The help overlay is shown.
     pub help: bool,
-    /// The dark theme is chosen.
-    pub dark: bool,
+    /// The gallery is shown.
+    pub gallery: bool,
+    /// Its pictures, as far as they are rendered.
+    pub thumbnails: Vec<Thumbnail>,
+    /// Its pictures on the graphics card.
+    pub textures: BTreeMap<&'static str, egui::TextureHandle>,
+    /// The values under the cursor are shown.
+    pub inspector: bool,
+    /// A file is being chosen.
+    pub browser: Option<Browser>,
+    /// Hash of the scene file as it was read.
+    pub scene_hash: String,
+    /// What is remembered.
+    pub preferences: Preferences,
 }
 
 impl Workspace {
@@ -101,11 +142,17 @@ impl Workspace {
             area: UVec2::ZERO,
             max_pixels: u64::MAX,
             navigating: false,
+            hold: None,
             paused: false,
             placement: Placement::default(),
-            panel: true,
             help: false,
-            dark: true,
+            gallery: false,
+            thumbnails: Vec::new(),
+            textures: BTreeMap::new(),
+            inspector: false,
+            browser: None,
+            scene_hash: String::new(),
+            preferences: Preferences::default(),
         }
     }
 
@@ -114,19 +161,58 @@ impl Workspace {
         self.model.pixels(self.area, self.max_pixels)
     }
 
-    /// Shows another scene, or the same one read again.
-    pub fn show_scene(&mut self, source: SceneSource, scene: Arc<Scene>, again: bool) {
+    /// Shows another scene, or the same one read again, `hash` being that of its file.
+    pub fn show_scene(&mut self, opening: Opening, scene: Arc<Scene>, again: bool, hash: String) {
         self.notices.clear_error("scene");
         if !again || self.model.home != scene.camera {
             self.model.view = scene.camera;
         }
         self.model.home = scene.camera;
-        self.model.source = source;
+        self.model.source = opening.source;
         self.scene = Some(scene);
+        self.scene_hash = hash;
+        if let Some(path) = self.model.source.path() {
+            self.preferences.opened(path);
+        }
+        if let Some(state) = opening.state {
+            if state.scene_hash().is_some_and(|h| h != self.scene_hash) {
+                let text = "The scene file has changed since this picture was saved.";
+                self.notices.say(text);
+            }
+            match state.restore(&mut self.model) {
+                Ok(()) => {}
+                Err(why) => self
+                    .notices
+                    .set_error("scene", format!("The state cannot be restored: {why}.")),
+            }
+        }
         if !again {
             self.placement = Placement::default();
             self.history = History::new(&self.model);
         }
+    }
+
+    fn choose_file(&mut self, purpose: Purpose) {
+        let name = match purpose {
+            Purpose::Open => String::new(),
+            Purpose::Save => format!("{}.png", self.proposed_stem()),
+        };
+        let recent = self
+            .preferences
+            .recent
+            .first()
+            .and_then(|path| path.parent());
+        let folder = match purpose {
+            Purpose::Open => recent.unwrap_or(Path::new(".")).to_owned(),
+            Purpose::Save => PathBuf::from("."),
+        };
+        self.browser = Some(Browser::new(purpose, &folder, &name));
+    }
+
+    /// Start of the names that are proposed for files.
+    pub fn proposed_stem(&self) -> String {
+        let passes = self.frame.as_ref().map_or(0, |frame| frame.passes);
+        format!("{}-{passes}spp", self.model.source.short_name())
     }
 
     /// To be called before the hand moves the camera.
@@ -139,6 +225,42 @@ impl Workspace {
             let (center, radius) = scene.geometry.bounding_sphere();
             self.model.view = navigation::with_target_in(&self.model.view, center.into(), radius);
         }
+    }
+
+    /// Magnifies the picture's pixels by `factor` about a point of its area in physical pixels.
+    pub fn magnify(&mut self, factor: f32, at: Vec2) {
+        let zoom = (self.placement.zoom * factor).clamp(1.0, MAX_ZOOM);
+        let full = self.pixels();
+        let (display, area) = (&self.model.display, self.area);
+        let Some(before) = picture_point(display, self.placement, area, full, at) else {
+            return;
+        };
+        self.placement.zoom = zoom;
+        if zoom == 1.0 {
+            self.placement = Placement::default();
+        } else if let Some(after) = picture_point(display, self.placement, area, full, at) {
+            self.placement.center += (before - after) / full.as_vec2();
+        }
+    }
+
+    /// Moves the magnified picture with the hand, by physical pixels.
+    pub fn move_pixels(&mut self, by: Vec2) {
+        let share = if self.model.display.shown == Shown::Grid {
+            0.5
+        } else {
+            1.0
+        };
+        let fit = (self.area.as_vec2() * share / self.pixels().as_vec2()).min_element();
+        let shift = by / (fit * self.placement.zoom) / self.pixels().as_vec2();
+        self.placement.center = (self.placement.center - shift).clamp(Vec2::ZERO, Vec2::ONE);
+        if self.placement.zoom == 1.0 {
+            self.placement = Placement::default();
+        }
+    }
+
+    /// True while a lower resolution stands in for the picture.
+    pub fn is_coarse(&self) -> bool {
+        self.frame.as_ref().is_some_and(|frame| frame.is_coarse())
     }
 
     /// Takes a frame over; a failed one says why and leaves the old picture.
@@ -156,6 +278,11 @@ impl Workspace {
     /// Carries out a command.
     pub fn run(&mut self, command: Command) {
         match command {
+            Command::Open => self.choose_file(Purpose::Open),
+            Command::SaveAs => self.choose_file(Purpose::Save),
+            Command::Gallery => self.gallery = !self.gallery,
+            Command::Inspector => self.inspector = !self.inspector,
+            Command::ZoomOut => self.placement = Placement::default(),
             Command::Reload => self.requests.push(Request::Reload),
             Command::SavePng => self.requests.push(Request::Save(Format::Png)),
             Command::SaveExr => self.requests.push(Request::Save(Format::Exr)),
@@ -167,9 +294,9 @@ impl Workspace {
             Command::Redo => self.history.redo(&mut self.model),
             Command::Home => self.model.view = self.model.home,
             Command::Pause => self.paused = !self.paused,
-            Command::Panel => self.panel = !self.panel,
+            Command::Panel => self.preferences.panel = !self.preferences.panel,
             Command::Help => self.help = !self.help,
-            Command::Theme => self.dark = !self.dark,
+            Command::Theme => self.preferences.dark = !self.preferences.dark,
             Command::Whole
             | Command::Solo(_)
             | Command::Grid

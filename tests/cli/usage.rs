@@ -166,6 +166,10 @@ fn wrong_usage_exits_with_2_and_says_what_would_be_right() {
         (&["bench", "scenes", "."], "ref.exr"),
         (&["bench", "first-frame", "--changes", "0"], "at least 1"),
         (&["bench", "rays", "none.obj"], "none.obj"),
+        (&["bench", "photons", "--photons", "10,0"], "at least 1"),
+        (&["bench", "photons", "--scene", "none.toml"], "none.toml"),
+        (&["bench", "noise-bias", "--set", "nearst=9"], "nearest"),
+        (&["bench", "noise-bias", "--set", "nearest=1"], "from 2 to"),
         (
             &["bench", "rays", &shell, "--rays", "notes.txt"],
             "notes.txt",

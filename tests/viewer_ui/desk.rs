@@ -9,6 +9,7 @@ use lightscope::engine::integrators::{Cancel, REGISTRY};
 use lightscope::engine::io::scene_file;
 use lightscope::engine::scene::Scene;
 use lightscope::engine::session::{RenderJob, Renderer, Settings};
+use lightscope::viewer::opening::Opening;
 use lightscope::viewer::panels;
 use lightscope::viewer::source::SceneSource;
 use lightscope::viewer::workspace::Workspace;
@@ -24,7 +25,8 @@ pub fn workspace() -> Workspace {
     let scene = Arc::new(Scene::build(&desc).expect("a scene"));
     let source = SceneSource::File(path);
     let mut workspace = Workspace::new(source.clone());
-    workspace.show_scene(source, Arc::clone(&scene), false);
+    let opening = Opening::scene(source);
+    workspace.show_scene(opening, Arc::clone(&scene), false, String::new());
     let size = UVec2::new(32, 24);
     let job = RenderJob {
         camera: workspace.model.camera(size).expect("a camera"),

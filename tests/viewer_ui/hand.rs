@@ -74,6 +74,30 @@ fn a_left_drag_orbits_and_is_one_step_of_undo() {
 }
 
 #[test]
+fn a_drag_within_one_repaint_is_not_lost() {
+    let mut desk = desk();
+    let before = view(&desk);
+    desk.hover_at(MIDDLE);
+    desk.step();
+    let to = MIDDLE + Vec2::new(50.0, 0.0);
+    let press = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let events = [
+        press(MIDDLE, true),
+        Event::PointerMoved(to),
+        press(to, false),
+    ];
+    desk.input_mut().events.extend(events);
+    desk.step();
+    assert_ne!(view(&desk).position, before.position);
+    assert!(desk.state().hold.is_none());
+}
+
+#[test]
 fn middle_right_and_shift_drags_pan() {
     for (with, modifiers) in [
         (PointerButton::Middle, Modifiers::NONE),
@@ -180,6 +204,6 @@ fn letters_typed_into_a_field_are_no_commands() {
     desk.key_press(Key::P);
     desk.key_press(Key::Num5);
     desk.step();
-    assert!(desk.state().panel);
+    assert!(desk.state().preferences.panel);
     assert_eq!(desk.state().model.display.shown, Shown::Whole);
 }

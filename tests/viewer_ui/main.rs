@@ -3,4 +3,5 @@
 
 mod controls;
 mod desk;
+mod files;
 mod hand;

@@ -2,6 +2,7 @@
 //! and a hand that is a program.
 #![cfg(all(feature = "viewer", target_os = "linux"))]
 
+mod files;
 mod screen;
 mod walk;
 

@@ -1,7 +1,7 @@
 //! An X server without a screen, and the program on it.
 
 use std::io::{BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -28,6 +28,29 @@ pub fn wait_until(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
     }
     false
 }
+
+/// The file in `folder` whose name ends in `end`, once it is there.
+pub fn saved(folder: &Path, end: &str) -> PathBuf {
+    let find = || {
+        let entries = std::fs::read_dir(folder).expect("the folder");
+        let paths = entries.filter_map(|e| e.ok().map(|e| e.path()));
+        paths
+            .filter(|p| {
+                !p.file_name()
+                    .is_some_and(|n| n.to_string_lossy().starts_with('.'))
+            })
+            .find(|p| p.to_string_lossy().ends_with(end))
+    };
+    assert!(
+        wait_until(20.0, || find().is_some()),
+        "no file *{end} is written"
+    );
+    find().expect("a file")
+}
+
+/// The part of the screen that the picture fills beside the panel, at the tests' window size.
+pub const WIDTH: u32 = 560;
+pub const HEIGHT: u32 = 600;
 
 /// A server of its own; it ends with the test.
 pub struct Screen {
@@ -175,7 +198,7 @@ impl<'a> Program<'a> {
     /// What lies left of the panel.
     pub fn picture(&self) -> RgbImage {
         let screen = self.screen.picture();
-        image::imageops::crop_imm(&screen, 0, 0, 560, 560).to_image()
+        image::imageops::crop_imm(&screen, 0, 0, WIDTH, HEIGHT).to_image()
     }
 
     /// Waits until something bright is shown where the picture is.
@@ -211,6 +234,13 @@ impl<'a> Program<'a> {
             let _ = self.picture().save(&path);
             panic!("{what}: not seen; the last picture is {}", path.display());
         }
+    }
+
+    /// Closes the window, which must be quick and leave no error.
+    pub fn quit(&mut self) {
+        self.key("ctrl+q");
+        assert!(wait_until(5.0, || self.has_ended()), "it does not end");
+        assert_eq!(self.exit_code(), Some(0));
     }
 
     pub fn has_ended(&mut self) -> bool {

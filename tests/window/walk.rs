@@ -1,27 +1,6 @@
 //! A walk through what a newcomer does.
 
-use std::path::Path;
-
-use crate::screen::{Program, Screen, difference, mean, reference, wait_until};
-
-/// The file in `folder` whose name ends in `end`, once it is there.
-fn saved(folder: &Path, end: &str) -> std::path::PathBuf {
-    let find = || {
-        let entries = std::fs::read_dir(folder).expect("the folder");
-        let paths = entries.filter_map(|e| e.ok().map(|e| e.path()));
-        paths
-            .filter(|p| {
-                !p.file_name()
-                    .is_some_and(|n| n.to_string_lossy().starts_with('.'))
-            })
-            .find(|p| p.to_string_lossy().ends_with(end))
-    };
-    assert!(
-        wait_until(20.0, || find().is_some()),
-        "no file *{end} is written"
-    );
-    find().expect("a file")
-}
+use crate::screen::{HEIGHT, Program, Screen, WIDTH, difference, mean, reference, saved};
 
 #[test]
 fn drag_resize_solo_screenshot_quit() {
@@ -65,11 +44,9 @@ fn drag_resize_solo_screenshot_quit() {
         (png.width() as usize, png.height() as usize)
     );
     // The file holds what the window shows: the left top of it, pixel by pixel.
-    let corner = image::imageops::crop_imm(&png, 0, 0, 560, 560).to_image();
+    let corner = image::imageops::crop_imm(&png, 0, 0, WIDTH, HEIGHT).to_image();
     let off = difference(&corner, &program.picture());
     assert!(off < 2.0, "the screenshot differs from the window by {off}");
 
-    program.key("ctrl+q");
-    assert!(wait_until(5.0, || program.has_ended()), "it does not end");
-    assert_eq!(program.exit_code(), Some(0));
+    program.quit();
 }

@@ -69,7 +69,7 @@ pub fn run(args: &FirstFrameArgs) -> Result<(), CliError> {
 }
 
 /// Milliseconds of each change.
-fn measure(args: &FirstFrameArgs) -> Result<Vec<f64>, CliError> {
+pub fn measure(args: &FirstFrameArgs) -> Result<Vec<f64>, CliError> {
     let desc = scene::read(&args.scene)?;
     let (scene, camera) = scene::build(&desc, args.size)?;
     let (wake, woken) = channel();
@@ -129,7 +129,7 @@ fn turned(camera: &CameraDesc, angle: f32) -> CameraDesc {
 }
 
 /// Nearest-rank percentile of ascending values.
-fn percentile(sorted: &[f64], share: f64) -> f64 {
+pub fn percentile(sorted: &[f64], share: f64) -> f64 {
     let rank = (share * sorted.len() as f64).ceil() as usize;
     sorted
         .get(rank.clamp(1, sorted.len().max(1)) - 1)

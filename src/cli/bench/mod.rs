@@ -1,6 +1,10 @@
 //! `lightscope bench`: how fast this machine renders.
 
 mod first_frame;
+#[cfg(feature = "viewer")]
+mod latency;
+mod noise_bias;
+mod photons;
 mod rays;
 mod scenes;
 
@@ -11,6 +15,10 @@ use super::error::CliError;
 pub fn run(what: &Bench) -> Result<(), CliError> {
     match what {
         Bench::FirstFrame(args) => first_frame::run(args),
+        #[cfg(feature = "viewer")]
+        Bench::Latency(args) => latency::run(args),
+        Bench::NoiseBias(args) => noise_bias::run(args),
+        Bench::Photons(args) => photons::run(args),
         Bench::Rays(args) => rays::run(args),
         Bench::Scenes(args) => scenes::run(args),
     }

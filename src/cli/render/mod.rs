@@ -111,6 +111,9 @@ fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Re
     }
     let attributes = Attributes::of(&rendered.scene, options, frame);
     picture::write(options, frame, &attributes)?;
+    for fact in &rendered.frame.facts {
+        eprintln!("{}: {}", fact.label, fact.value);
+    }
     eprintln!("wrote {}", options.output.path.display());
     notes::print_after(frame, rendered.errors.as_ref());
     if args.json {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use crate::engine::integrators::RenderStats;
+use crate::engine::integrators::{Fact, PhotonView, RenderStats};
 use crate::engine::plan::RenderPlan;
 
 /// A picture: mean radiance, row by row from the top left.
@@ -40,6 +40,12 @@ pub struct Frame {
     pub relative_error: Option<f64>,
     /// What is computed and what was left out.
     pub plan: Arc<RenderPlan>,
+    /// A path-traced picture that stands in while the integrator cannot deliver one.
+    pub preview: bool,
+    /// What the integrator prepared.
+    pub facts: Vec<Fact>,
+    /// Its photons.
+    pub photons: Option<PhotonView>,
     /// The job is paused.
     pub paused: bool,
     /// A sentence for the user when the render stopped with an error.
@@ -60,6 +66,9 @@ impl Frame {
             stats: RenderStats::default(),
             relative_error: None,
             plan,
+            preview: false,
+            facts: Vec::new(),
+            photons: None,
             paused: false,
             error: None,
         }

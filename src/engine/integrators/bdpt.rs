@@ -265,6 +265,11 @@ impl Bdpt {
         self.grid = Some(grid);
     }
 
+    /// The photons it merges with.
+    pub(super) fn photons(&self) -> Option<&PhotonGrid> {
+        self.grid.as_ref()
+    }
+
     /// Takes the sample of `pixel` in the pass `cx`.
     pub(super) fn sample_pixel(
         &self,

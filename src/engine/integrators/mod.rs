@@ -10,6 +10,7 @@ pub mod monte_carlo;
 pub mod params;
 pub mod pass;
 pub mod path;
+pub mod photon;
 pub mod pssmlt;
 pub mod pyramid;
 pub mod sppm;
@@ -20,6 +21,7 @@ pub mod whitted;
 
 pub use params::{ParamKind, ParamSpec, ParamValue, Params};
 pub use pass::{Cancel, Cancelled, Pass};
+pub use photon::PhotonView;
 pub use stats::{BadSample, RenderStats};
 
 use std::borrow::Cow;
@@ -34,6 +36,37 @@ pub trait Integrator: Send + Sync {
     /// # Errors
     /// [`Cancelled`] if the job was replaced meanwhile; the film is then as it was.
     fn render_pass(&mut self, pass: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled>;
+
+    /// Takes other parameters and keeps what does not depend on them. False if it keeps nothing:
+    /// it is then built anew.
+    fn update(&mut self, _params: &Params) -> bool {
+        false
+    }
+
+    /// Whether it cannot deliver a picture of this view while the camera moves: a path-traced
+    /// preview, labelled so, then stands in.
+    fn needs_preview(&self, _pass: &Pass<'_>) -> bool {
+        false
+    }
+
+    /// What it prepared, for the user to read.
+    fn facts(&self) -> Vec<Fact> {
+        Vec::new()
+    }
+
+    /// Its photons, for display.
+    fn photons(&self) -> Option<PhotonView> {
+        None
+    }
+}
+
+/// A line about what an integrator prepared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fact {
+    /// What.
+    pub label: &'static str,
+    /// Counts and sizes, in words.
+    pub value: String,
 }
 
 /// All that is known of an integrator without running it.
@@ -69,6 +102,7 @@ pub const REGISTRY: &[Entry] = &[
     light::ENTRY,
     bdpt::ENTRY,
     pssmlt::ENTRY,
+    photon::ENTRY,
     sppm::ENTRY,
     vcm::ENTRY,
 ];

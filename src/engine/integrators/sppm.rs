@@ -10,7 +10,7 @@ use super::path::{Mode, PathTracer, Walk};
 use super::tiled::{CAMERA_DIMENSIONS, RayIntegrator, SamplerKind, Tiled};
 use super::vcm::{ALPHA_PARAM, PhotonSource, RADIUS_PARAM};
 use super::{
-    Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
+    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
 };
 use crate::engine::bsdf::{Bsdf, Transport};
 use crate::engine::event::{Event, Letter};
@@ -80,6 +80,11 @@ impl Integrator for Sppm {
         self.tiled.estimator_mut().grid = Some(grid);
         stats += self.tiled.render_pass(cx, film)?;
         Ok(stats)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let grid = self.tiled.estimator().grid.as_ref();
+        grid.map(PhotonGrid::fact).into_iter().collect()
     }
 }
 

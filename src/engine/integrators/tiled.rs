@@ -61,6 +61,11 @@ impl<T: RayIntegrator> Tiled<T> {
         }
     }
 
+    /// The estimator.
+    pub fn estimator(&self) -> &T {
+        &self.estimator
+    }
+
     /// The estimator, to be changed between passes.
     pub fn estimator_mut(&mut self) -> &mut T {
         &mut self.estimator

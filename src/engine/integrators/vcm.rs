@@ -5,7 +5,7 @@
 //! Each pass stores the diffuse vertices of light paths, then connects and merges. Merging is
 //! biased by its radius, which shrinks from pass to pass so that bias and noise both vanish (Knaus
 //! and Zwicker 2011, *Progressive Photon Mapping: A Probabilistic Approach*). Memory is that of the
-//! light paths of one pass, of which there are at most [`MAX_PATHS`].
+//! light paths of one pass, of which there are at most `MAX_PATHS`.
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use super::bdpt::Bdpt;
 use super::bidirectional::{PhotonGrid, PhotonList, Subpath, Walker};
 use super::tiled::SamplerKind;
 use super::{
-    Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
+    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
 };
 use crate::engine::film::Film;
 use crate::engine::sampling::{IndependentSampler, SobolSampler, Stream};
@@ -185,5 +185,13 @@ impl Integrator for Vcm {
         self.bdpt.merge_with(grid);
         stats += self.bdpt.render_pass(cx, film)?;
         Ok(stats)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        self.bdpt
+            .photons()
+            .map(PhotonGrid::fact)
+            .into_iter()
+            .collect()
     }
 }

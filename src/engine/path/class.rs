@@ -22,6 +22,11 @@ impl ClassId {
     /// The empty word.
     pub const EMPTY: Self = Self(0);
 
+    /// The class of a byte that [`Self::to_byte`] gave for the same layers.
+    pub const fn from_byte(byte: u8) -> Self {
+        Self(byte)
+    }
+
     /// The byte, for photons and records that carry it.
     pub const fn to_byte(self) -> u8 {
         self.0

@@ -14,6 +14,8 @@ pub enum Stream {
     Preparation = 3,
     /// Tests.
     Test = 4,
+    /// Gather rays: the index is drawn by the sample they belong to, or made of a record's place.
+    Gather = 5,
     /// Mutations of Markov chains: the index is a chain and a step.
     Chain = 6,
     /// Independent samples that chains start from and their normalisation is estimated by.

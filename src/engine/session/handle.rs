@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
 use super::job::RenderJob;
-use super::worker;
+use super::{priority, worker};
 use crate::engine::film::Frame;
 
 /// What owner and worker share.
@@ -103,6 +103,7 @@ impl RenderSession {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|i| format!("render-{i}"))
+            .start_handler(|_| priority::lower())
             .build()?;
         let for_worker = Arc::clone(&shared);
         let worker = std::thread::Builder::new()

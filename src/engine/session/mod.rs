@@ -7,6 +7,7 @@ mod clock;
 mod frames;
 mod handle;
 mod job;
+mod priority;
 mod renderer;
 pub mod schedule;
 mod worker;

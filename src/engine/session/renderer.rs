@@ -9,7 +9,7 @@ use super::clock::RenderClock;
 use super::job::{RenderJob, Settings};
 use crate::engine::camera::Camera;
 use crate::engine::film::{Film, Frame};
-use crate::engine::integrators::{Cancel, Cancelled, Integrator, Pass, RenderStats};
+use crate::engine::integrators::{Cancel, Cancelled, Integrator, Params, Pass, RenderStats};
 use crate::engine::path::ExpressionError;
 use crate::engine::plan::RenderPlan;
 use crate::engine::scene::Scene;
@@ -22,6 +22,10 @@ pub struct Renderer {
     settings: Settings,
     plan: Arc<RenderPlan>,
     integrator: Box<dyn Integrator>,
+    /// Stands in for coarse pictures that the integrator cannot deliver.
+    preview: Option<Box<dyn Integrator>>,
+    /// The last coarse picture was a preview.
+    previewed: bool,
     film: Film,
     stats: RenderStats,
     clock: RenderClock,
@@ -39,21 +43,25 @@ impl Renderer {
         Ok(Self::with_plan(job, plan, clock))
     }
 
-    /// Accepts a job in place of `previous`, and keeps its integrator if only the view changed.
+    /// Accepts a job in place of `previous`, and keeps its integrator if only the view changed,
+    /// or if the integrator can take the new settings: what it prepared survives.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn replace(previous: Option<Self>, job: &RenderJob) -> Result<Self, ExpressionError> {
         let mut renderer = Self::new(job)?;
-        let Some(previous) = previous else {
+        let Some(mut previous) = previous else {
             return Ok(renderer);
         };
         if let Some(film) = previous.film.reuse(job.size, renderer.plan.planned) {
             renderer.film = film;
         }
-        if Arc::ptr_eq(&previous.scene, &job.scene)
-            && previous.settings.same_integrator(&job.settings)
-        {
+        renderer.preview = previous.preview;
+        let (old, new) = (&previous.settings, &job.settings);
+        let keeps = old.same_integrator(new)
+            || std::ptr::eq(old.integrator, new.integrator)
+                && previous.integrator.update(&new.params);
+        if Arc::ptr_eq(&previous.scene, &job.scene) && keeps {
             renderer.integrator = previous.integrator;
         }
         Ok(renderer)
@@ -68,6 +76,8 @@ impl Renderer {
             settings: job.settings.clone(),
             film: Film::new(job.size, plan.planned),
             integrator: (job.settings.integrator.build)(&job.settings.params),
+            preview: None,
+            previewed: false,
             plan: Arc::new(plan),
             stats: RenderStats::default(),
             clock,
@@ -108,8 +118,21 @@ impl Renderer {
             index: 0,
             cancel,
         };
-        self.integrator.render_pass(&pass, &mut film)?;
+        self.previewed = self.integrator.needs_preview(&pass);
+        if self.previewed {
+            let entry = &crate::engine::integrators::path::ENTRY;
+            let build = || (entry.build)(&Params::defaults(entry.params));
+            let preview = self.preview.get_or_insert_with(build);
+            preview.render_pass(&pass, &mut film)?;
+        } else {
+            self.integrator.render_pass(&pass, &mut film)?;
+        }
         Ok(film)
+    }
+
+    /// Whether the last coarse picture was a preview: its time says nothing of a full pass.
+    pub fn previewed(&self) -> bool {
+        self.previewed
     }
 
     /// Seed of all random numbers.
@@ -169,6 +192,9 @@ impl Renderer {
             None
         };
         frame.plan = Arc::clone(&self.plan);
+        frame.preview = coarse.is_some() && self.previewed;
+        frame.facts = self.integrator.facts();
+        frame.photons = self.integrator.photons();
         frame.paused = false;
         frame.error = None;
     }

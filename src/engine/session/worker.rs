@@ -153,7 +153,11 @@ impl Worker<'_> {
             Step::Full => 1,
         };
         let cells = pixels as f64 / f64::from(divisor * divisor);
-        self.seconds_per_pixel = start.elapsed().as_secs_f64() / cells.max(1.0);
+        // Coarse pictures are planned by this figure: where previews stand in for them, full
+        // passes say nothing about it.
+        if coarse.is_some() || !current.renderer.previewed() {
+            self.seconds_per_pixel = start.elapsed().as_secs_f64() / cells.max(1.0);
+        }
         current.unpublished = true;
         let since = current.last_publish.elapsed().as_secs_f64();
         if coarse.is_some() || publish_now(current.renderer.passes(), since) {

@@ -7,5 +7,5 @@ mod picture;
 #[cfg(test)]
 mod tests;
 
-pub use layout::{Placement, picture_point};
-pub use picture::PictureCallback;
+pub use layout::{PixelRect, Placement, picture_point, place};
+pub use picture::{PictureCallback, Resources};

@@ -29,7 +29,7 @@ pub struct PictureCallback {
 }
 
 /// What stays on the graphics card between repaints.
-pub(super) struct Resources {
+pub struct Resources {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     uniforms: wgpu::Buffer,
@@ -79,6 +79,7 @@ fn physical(rect: egui::Rect, pixels_per_point: f32) -> PixelRect {
 }
 
 impl Resources {
+    /// Pipeline and empty buffers for targets of `format`.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let layout = bind_group_layout(device);
         let alignment = device.limits().min_uniform_buffer_offset_alignment;

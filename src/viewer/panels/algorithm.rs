@@ -14,7 +14,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         .selected_text(before.label)
         .show_ui(ui, |ui| {
             for entry in REGISTRY {
-                let is_chosen = std::ptr::eq(entry, settings.integrator);
+                let is_chosen = entry.id == settings.integrator.id;
                 let choice = ui.selectable_label(is_chosen, entry.label);
                 if choice.on_hover_text(entry.summary).clicked() && !is_chosen {
                     settings.integrator = entry;

@@ -49,6 +49,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         .on_hover_text(line.tooltip());
     ui.horizontal(|ui| {
         widgets::command(ui, workspace, Command::AutoExposure);
+        widgets::command(ui, workspace, Command::Inspector);
         widgets::command(ui, workspace, Command::Theme);
     });
 }

@@ -6,7 +6,7 @@ use crate::viewer::commands::TABLE;
 use crate::viewer::workspace::Workspace;
 
 /// What the mouse and the flying keys do.
-pub const HANDS: [(&str, &str); 8] = [
+pub const HANDS: [(&str, &str); 10] = [
     ("Left drag", "Orbit about the target"),
     ("Middle or right drag, Shift + left drag", "Pan"),
     ("Wheel, pinch", "Dolly toward the cursor"),
@@ -18,6 +18,8 @@ pub const HANDS: [(&str, &str); 8] = [
     ("Q E", "Fly down, up"),
     ("Left drag while flying", "Look around"),
     ("Shift while flying", "Four times as fast"),
+    ("Ctrl + wheel", "Magnify the pixels under the cursor"),
+    ("Ctrl + drag", "Move the magnified picture"),
 ];
 
 /// Draws the overlay.

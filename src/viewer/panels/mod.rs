@@ -1,14 +1,19 @@
 //! The window's contents, drawn anew for every repaint: one file a panel.
 
 mod algorithm;
+mod browser;
 mod camera;
 mod components;
 mod display;
+mod gallery;
+mod hand;
 mod help;
+mod inspector;
 mod notices;
 mod output;
 mod params;
 mod picture;
+mod pixel_values;
 mod plan;
 mod scene;
 mod statistics;
@@ -19,12 +24,22 @@ mod widgets;
 use egui::{CentralPanel, Panel, ScrollArea, Ui};
 
 use super::commands;
-use super::workspace::Workspace;
+use super::workspace::{Request, Workspace};
 
 pub use style::apply as apply_style;
 
-/// Width of the panel in points.
-const WIDTH: f32 = 292.0;
+/// Title, whether it is open at first, and contents of a section.
+type Section = (&'static str, bool, fn(&mut Ui, &mut Workspace));
+
+/// The panel's sections from top to bottom.
+const SECTIONS: [Section; 6] = [
+    ("Algorithm", true, algorithm::show),
+    ("Components", true, components::show),
+    ("Display", true, display::show),
+    ("Camera", false, camera::show),
+    ("Save", true, output::show),
+    ("Statistics", false, statistics::show),
+];
 
 /// Draws everything and lets the user's input change `workspace`.
 pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
@@ -39,21 +54,29 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     if let Some(seconds) = workspace.notices.next_change(now) {
         ui.ctx().request_repaint_after_secs(seconds as f32);
     }
-    style::follow_theme(ui, workspace.dark);
+    if let Some(file) = ui.input(|input| input.raw.dropped_files.last().cloned()) {
+        workspace
+            .requests
+            .push(Request::Open(file.path().to_owned()));
+    }
+    style::follow_theme(ui, workspace.preferences.dark);
 
     Panel::bottom("status")
         .frame(style::status_frame(ui))
         .show_separator_line(false)
         .show(ui, |ui| status::show(ui, workspace));
-    if workspace.panel {
-        Panel::right("panel")
-            .default_size(WIDTH)
+    if workspace.preferences.panel {
+        let panel = Panel::right("panel")
+            .default_size(workspace.preferences.panel_width)
             .size_range(240.0..=480.0)
             .show(ui, |ui| side(ui, workspace));
+        workspace.preferences.panel_width = panel.response.rect.width();
     }
     CentralPanel::no_frame().show(ui, |ui| picture::show(ui, workspace));
     notices::show(ui, workspace);
     help::show(ui, workspace);
+    gallery::show(ui, workspace);
+    browser::show(ui, workspace);
 
     let busy = workspace.navigating || ui.input(|i| i.pointer.any_down());
     workspace.history.observe(&workspace.model, busy);
@@ -63,14 +86,9 @@ fn side(ui: &mut Ui, workspace: &mut Workspace) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(4.0);
         scene::show(ui, workspace);
-        widgets::section(ui, "Algorithm", true, |ui| algorithm::show(ui, workspace));
-        widgets::section(ui, "Components", true, |ui| components::show(ui, workspace));
-        widgets::section(ui, "Display", true, |ui| display::show(ui, workspace));
-        widgets::section(ui, "Camera", false, |ui| camera::show(ui, workspace));
-        widgets::section(ui, "Save", true, |ui| output::show(ui, workspace));
-        widgets::section(ui, "Statistics", false, |ui| {
-            statistics::show(ui, workspace)
-        });
+        for (title, open, contents) in SECTIONS {
+            widgets::section(ui, workspace, title, open, contents);
+        }
         ui.add_space(8.0);
     });
 }

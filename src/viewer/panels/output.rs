@@ -15,6 +15,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         for command in [
             Command::SavePng,
             Command::SaveExr,
+            Command::SaveAs,
             Command::Copy,
             Command::SaveWindow,
         ] {

@@ -3,7 +3,7 @@
 use egui::{ComboBox, RichText, Ui};
 
 use super::widgets;
-use crate::engine::scene::embedded;
+use crate::engine::io::embedded;
 use crate::viewer::commands::Command;
 use crate::viewer::source::SceneSource;
 use crate::viewer::workspace::{Request, Workspace};
@@ -35,7 +35,9 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             ui.label(RichText::new(format!("Note: {warning}")).weak());
         }
     }
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
+        widgets::command(ui, workspace, Command::Open);
+        widgets::command(ui, workspace, Command::Gallery);
         let paused = workspace.paused;
         let label = if paused { "Go on" } else { "Pause" };
         widgets::command_labelled(ui, workspace, Command::Pause, label, true);

@@ -7,7 +7,7 @@ use crate::engine::film::Frame;
 use crate::viewer::workspace::Workspace;
 
 /// Draws the figures.
-pub fn show(ui: &mut Ui, workspace: &Workspace) {
+pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     let Some(frame) = &workspace.frame else {
         ui.weak("Nothing is rendered yet.");
         return;

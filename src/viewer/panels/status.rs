@@ -39,6 +39,10 @@ fn progress(ui: &mut Ui, workspace: &Workspace) {
     if frame.is_coarse() {
         let side = frame.full_size.x.div_ceil(frame.size.x.max(1));
         ui.label(format!("1 of {} pixels", side * side));
+        if frame.preview {
+            ui.strong("path-traced preview")
+                .on_hover_text("The chosen algorithm cannot keep up with a moving view.");
+        }
     } else {
         ui.label(format!("{} samples", frame.passes))
             .on_hover_text("Samples a pixel.");
@@ -52,6 +56,10 @@ fn progress(ui: &mut Ui, workspace: &Workspace) {
             .on_hover_text("Estimated root mean square error over the mean of the picture.");
     }
     ui.weak(format!("{} × {}", frame.full_size.x, frame.full_size.y));
+    if workspace.placement.zoom > 1.0 {
+        ui.label(format!("magnified {:.1} ×", workspace.placement.zoom))
+            .on_hover_text(binding(Command::ZoomOut).tooltip());
+    }
 }
 
 fn warnings(ui: &mut Ui, workspace: &Workspace) {

@@ -5,13 +5,32 @@ use egui::{CollapsingHeader, DragValue, Response, RichText, Ui, emath::Numeric};
 use crate::viewer::commands::{Command, binding};
 use crate::viewer::workspace::Workspace;
 
-/// A section of the panel that folds.
-pub fn section(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
+/// A section of the panel that folds; whether it is folded is remembered.
+pub fn section(
+    ui: &mut Ui,
+    workspace: &mut Workspace,
+    title: &str,
+    open: bool,
+    contents: fn(&mut Ui, &mut Workspace),
+) {
     ui.add_space(4.0);
     ui.separator();
-    CollapsingHeader::new(RichText::new(title).strong())
+    let open = workspace
+        .preferences
+        .sections
+        .get(title)
+        .copied()
+        .unwrap_or(open);
+    let header = CollapsingHeader::new(RichText::new(title).strong())
         .default_open(open)
-        .show_unindented(ui, contents);
+        .show_unindented(ui, |ui| contents(ui, workspace))
+        .header_response;
+    if header.clicked() {
+        workspace
+            .preferences
+            .sections
+            .insert(title.to_owned(), !open);
+    }
 }
 
 /// A button that carries out a command.

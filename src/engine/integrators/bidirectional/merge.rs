@@ -11,6 +11,7 @@ use super::ends::{LightEnd, area_density};
 use super::subpath::{LightStart, Subpath};
 use super::weight::Density;
 use crate::engine::event::Event;
+use crate::engine::integrators::Fact;
 use crate::engine::math::Rgb;
 use crate::engine::math::hash::combine;
 use crate::engine::path::ClassId;
@@ -181,6 +182,20 @@ impl PhotonGrid {
                     visit(photon);
                 }
             }
+        }
+    }
+
+    /// What is stored, for the user to read.
+    pub fn fact(&self) -> Fact {
+        Fact {
+            label: "photons of the last pass",
+            value: format!(
+                "{} of {} light paths, {:.1} MB, radius {:.3e}",
+                self.list.photons.len(),
+                self.paths,
+                self.bytes() as f64 * 1e-6,
+                self.radius
+            ),
         }
     }
 

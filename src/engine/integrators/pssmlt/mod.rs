@@ -19,7 +19,7 @@ use super::bdpt::{Bidirectional, missing as bdpt_missing};
 use super::bidirectional::{Heuristic, Strategies};
 use super::path::ENTRY as PATH;
 use super::{
-    Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
+    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
 };
 use crate::engine::film::{Film, SplatBuffer, SplatList};
 use crate::engine::math::distribution::Discrete;
@@ -257,5 +257,28 @@ impl Integrator for Metropolis {
         }
         film.set_scale(brightness.sum / brightness.samples.max(1) as f64);
         Ok(stats)
+    }
+
+    fn needs_preview(&self, _cx: &Pass<'_>) -> bool {
+        true // the independent samples before the first mutation take as long as a picture
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let (mut brightness, mut chains) = (Brightness::default(), 0);
+        for half in self.halves.iter().flatten() {
+            brightness.add(half.brightness);
+            chains += half.chains.len();
+        }
+        let samples = brightness.samples;
+        let value = match (samples, chains) {
+            (0, _) => return Vec::new(),
+            (_, 0) => format!("none: none of {samples} independent samples found light"),
+            _ => format!(
+                "{chains}; mean brightness {:.4} by {samples} independent samples",
+                brightness.sum / samples as f64
+            ),
+        };
+        let label = "Markov chains";
+        vec![Fact { label, value }]
     }
 }

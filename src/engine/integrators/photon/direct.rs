@@ -1,0 +1,121 @@
+//! Shadow rays, and light that the walk meets.
+
+use glam::Vec3A;
+
+use super::walk::{Estimator, Walk};
+use crate::engine::bsdf::{Bsdf, Transport};
+use crate::engine::event::Event;
+use crate::engine::film::SampleRadiance;
+use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::integrators::{Pass, RenderStats};
+use crate::engine::sampling::{Sampler, mis};
+
+/// The last event of a walk.
+pub(super) struct Scattered {
+    /// Where.
+    pub p: Vec3A,
+    /// Which: G or S, since a walk ends at D.
+    pub event: Event,
+    /// P(event) · p_event, 1/sr.
+    pub pdf_dir: f32,
+}
+
+impl Estimator {
+    /// A shadow ray to one light. The D event takes it with weight 1, since nothing else counts
+    /// words whose light part before it is empty; the G event shares it with the walk's own hits
+    /// (CONTRACT rules 2 and 7).
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the state of one walk; a struct would be made and taken apart once a vertex"
+    )]
+    pub(super) fn add_direct<S: Sampler>(
+        &self,
+        cx: &Pass<'_>,
+        walk: &Walk,
+        si: &SurfaceInteraction,
+        bsdf: &Bsdf,
+        sampler: &mut S,
+        out: &mut SampleRadiance<'_>,
+        stats: &mut RenderStats,
+    ) {
+        let lights = &cx.scene.lights;
+        let u = sampler.next_2d();
+        let Some((id, pmf)) = lights.sample(sampler.next_1d()) else {
+            return;
+        };
+        let Some(light) = lights.get(id).sample_li(si.p, u) else {
+            return;
+        };
+        let light_pdf = pmf * light.pdf_dir;
+        let incident = walk.throughput * light.radiance * (1.0 / light_pdf);
+        let mut visibility = None;
+        for event in bsdf.non_delta_events() {
+            let class = cx.plan.classes.prepend(event.letter(), walk.suffix);
+            let f_cos = bsdf.eval(event, si.wo, light.wi, Transport::Radiance);
+            if f_cos.is_black() || !cx.plan.is_wanted(class) {
+                continue;
+            }
+            let visible = *visibility.get_or_insert_with(|| {
+                stats.rays += 1;
+                cx.scene.transmittance(si, &light)
+            });
+            if visible == 0.0 {
+                return;
+            }
+            let weight = if event == Event::Diffuse || light.is_delta {
+                1.0
+            } else {
+                mis::power(light_pdf, bsdf.pdf(event, si.wo, light.wi))
+            };
+            out.add(class, incident * f_cos * (weight * visible));
+        }
+    }
+
+    /// Light of the surface that the walk met: a word without D.
+    pub(super) fn add_emitted(
+        &self,
+        cx: &Pass<'_>,
+        walk: &Walk,
+        si: &SurfaceInteraction,
+        out: &mut SampleRadiance<'_>,
+    ) {
+        let Some(id) = si.light else { return };
+        let lights = &cx.scene.lights;
+        let light = lights.get(id);
+        let emitted = light.emitted(si, si.wo);
+        if emitted.is_black() {
+            return;
+        }
+        let weight = hit_weight(walk.last.as_ref(), |p| {
+            lights.pmf(id) * light.pdf_li(p, -si.wo, Some(si))
+        });
+        out.add(walk.suffix, walk.throughput * emitted * weight);
+    }
+
+    /// Light from infinity where the walk leaves the scene.
+    pub(super) fn add_escaped(
+        &self,
+        cx: &Pass<'_>,
+        walk: &Walk,
+        ray: &Ray,
+        out: &mut SampleRadiance<'_>,
+    ) {
+        let lights = &cx.scene.lights;
+        for &id in lights.environments() {
+            let light = lights.get(id);
+            let weight = hit_weight(walk.last.as_ref(), |p| {
+                lights.pmf(id) * light.pdf_li(p, ray.d, None)
+            });
+            out.add(walk.suffix, walk.throughput * light.escaped(ray.d) * weight);
+        }
+    }
+}
+
+/// Weight of light that the walk met, against a shadow ray toward it of density `light_pdf`
+/// (selection included, 1/sr).
+fn hit_weight(last: Option<&Scattered>, light_pdf: impl FnOnce(Vec3A) -> f32) -> f32 {
+    match last {
+        Some(last) if !last.event.is_delta() => mis::power(last.pdf_dir, light_pdf(last.p)),
+        _ => 1.0,
+    }
+}

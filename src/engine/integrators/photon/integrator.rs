@@ -1,0 +1,269 @@
+//! Photon mapping as an integrator: it keeps what a change does not touch.
+
+use std::sync::Arc;
+
+use super::params::{Indirect, PhotonSettings};
+use super::view::PhotonView;
+use super::walk::Estimator;
+use crate::engine::film::Film;
+use crate::engine::integrators::tiled::{SamplerKind, Tiled};
+use crate::engine::integrators::{Cancelled, Fact, Integrator, Params, Pass, RenderStats};
+use crate::engine::photon::irradiance_cache::IrradianceCache;
+use crate::engine::photon::{MapKind, MapsSettings, PhotonMap, PhotonMaps};
+use crate::engine::scene::desc::CameraDesc;
+
+/// All that maps depend on beside the scene. A map is built anew when its key changes, and then
+/// only: a move of the camera and most settings change none.
+#[derive(Clone, Debug, PartialEq)]
+struct MapsKey {
+    settings: MapsSettings,
+    /// The expressions behind the classes that photons carry.
+    layers: Vec<String>,
+}
+
+impl MapsKey {
+    /// Whether maps of this key hold all that `wanted` asks for.
+    fn serves(&self, wanted: &Self) -> bool {
+        let (mut have, want) = (self.clone(), &wanted.settings);
+        for (count, wanted) in [
+            (&mut have.settings.caustic, want.caustic),
+            (&mut have.settings.global, want.global),
+        ] {
+            if wanted == 0 {
+                *count = 0;
+            }
+        }
+        have == *wanted
+    }
+}
+
+/// All that the records of the irradiance cache depend on.
+#[derive(Clone, Debug, PartialEq)]
+struct CacheKey {
+    maps: MapsKey,
+    camera: CameraDesc,
+    estimate: PhotonSettings,
+}
+
+/// The integrator.
+pub struct PhotonMapper {
+    settings: PhotonSettings,
+    tiled: Tiled<Estimator>,
+    maps: Option<(MapsKey, Arc<PhotonMaps>)>,
+    cache: Option<(CacheKey, Arc<IrradianceCache>)>,
+}
+
+impl PhotonMapper {
+    /// Without maps: they are built in the first pass.
+    pub fn new(settings: PhotonSettings) -> Self {
+        Self {
+            settings,
+            tiled: Tiled::new(Estimator::default(), SamplerKind::Sobol),
+            maps: None,
+            cache: None,
+        }
+    }
+
+    /// The records of interpolated gathers, where there are some.
+    fn cache(&self) -> Option<&IrradianceCache> {
+        self.cache.as_ref().map(|(_, cache)| cache.as_ref())
+    }
+
+    fn key(&self, cx: &Pass<'_>) -> MapsKey {
+        let index = if self.settings.fresh_maps {
+            cx.index
+        } else {
+            0
+        };
+        maps_key(&self.settings, cx, index)
+    }
+
+    /// Builds the maps this pass needs, where they are not there yet.
+    fn prepare(&mut self, cx: &Pass<'_>, stats: &mut RenderStats) -> Result<(), Cancelled> {
+        let key = self.key(cx);
+        if self
+            .maps
+            .as_ref()
+            .is_none_or(|(have, _)| !have.serves(&key))
+        {
+            self.maps = None;
+            self.cache = None;
+            self.tiled.estimator_mut().forget();
+            let maps = build_maps(&key, cx, stats)?;
+            self.maps = Some((key.clone(), Arc::new(maps)));
+        }
+        let maps = self.maps.as_ref().map(|(_, maps)| Arc::clone(maps));
+        *self.tiled.estimator_mut() =
+            Estimator::new(&self.settings, cx, maps.unwrap_or_default(), 1.0);
+        self.prepare_cache(cx, key, stats)
+    }
+
+    fn prepare_cache(
+        &mut self,
+        cx: &Pass<'_>,
+        maps: MapsKey,
+        stats: &mut RenderStats,
+    ) -> Result<(), Cancelled> {
+        // Records do not tell numbers of events apart: with a limit they cannot serve.
+        if self.settings.indirect != Indirect::Cache || cx.plan.max_depth.is_some() {
+            self.cache = None;
+            return Ok(());
+        }
+        let estimate = PhotonSettings {
+            caustic_map: true,
+            global_map: true,
+            ..self.settings
+        };
+        let camera = *cx.camera.desc();
+        let key = CacheKey {
+            maps,
+            camera,
+            estimate,
+        };
+        let estimator = self.tiled.estimator_mut();
+        match &self.cache {
+            Some((have, cache)) if *have == key => estimator.cache = Some(Arc::clone(cache)),
+            _ => {
+                estimator.fill_cache(cx, stats)?;
+                self.cache = estimator.cache.clone().map(|cache| (key, cache));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn maps_key(settings: &PhotonSettings, cx: &Pass<'_>, index: u64) -> MapsKey {
+    let features = &cx.plan.features;
+    // What is seen in a mirror reads both maps, whatever is blackened; without mirrors there are
+    // no caustics, and nobody reads the global map if its component is black.
+    let mirrors = features.specular || features.glossy;
+    let (caustic, global) = (mirrors, settings.global_map || mirrors);
+    let count = |read: bool, photons: usize| if read { photons } else { 0 };
+    let expressions = cx.plan.classes.expressions().iter();
+    MapsKey {
+        settings: MapsSettings {
+            caustic: count(caustic, settings.caustic_photons),
+            global: count(global, settings.global_photons),
+            map: settings.map(cx.seed, index),
+        },
+        layers: expressions.map(|e| e.text().to_owned()).collect(),
+    }
+}
+
+fn build_maps(
+    key: &MapsKey,
+    cx: &Pass<'_>,
+    stats: &mut RenderStats,
+) -> Result<PhotonMaps, Cancelled> {
+    let check = || cx.cancel.check();
+    let maps = PhotonMaps::build(cx.scene, &cx.plan.classes, &key.settings, &check)?;
+    for counts in maps.counts() {
+        stats.rays += counts.rays;
+        stats.cut_paths += counts.cut;
+    }
+    Ok(maps)
+}
+
+impl Estimator {
+    /// Reads `maps`; `scale` shrinks the area of every estimate (1: as the settings say).
+    pub(super) fn new(
+        settings: &PhotonSettings,
+        cx: &Pass<'_>,
+        maps: Arc<PhotonMaps>,
+        scale: f32,
+    ) -> Self {
+        let radius = cx.scene.geometry.bounding_sphere().1 * scale.sqrt();
+        Self {
+            settings: Some(*settings),
+            maps,
+            cache: None,
+            radii: [
+                settings.caustic_radius * radius,
+                settings.global_radius * radius,
+            ],
+            nearest: ((settings.nearest as f32 * scale).round() as usize).max(2),
+        }
+    }
+
+    /// Lets go of maps, so that they are freed before others are built.
+    fn forget(&mut self) {
+        self.maps = Arc::default();
+        self.cache = None;
+    }
+}
+
+/// Fresh maps of number `index` for the settings.
+pub(super) fn fresh_maps(
+    settings: &PhotonSettings,
+    cx: &Pass<'_>,
+    index: u64,
+    stats: &mut RenderStats,
+) -> Result<PhotonMaps, Cancelled> {
+    build_maps(&maps_key(settings, cx, index), cx, stats)
+}
+
+impl Integrator for PhotonMapper {
+    fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
+        let mut stats = RenderStats::default();
+        self.prepare(cx, &mut stats)?;
+        stats += self.tiled.render_pass(cx, film)?;
+        Ok(stats)
+    }
+
+    fn update(&mut self, params: &Params) -> bool {
+        self.settings = PhotonSettings::new(params);
+        true
+    }
+
+    fn needs_preview(&self, cx: &Pass<'_>) -> bool {
+        let built = self
+            .maps
+            .as_ref()
+            .is_some_and(|(have, _)| have.serves(&self.key(cx)));
+        !built || self.settings.indirect != Indirect::Direct
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let mut facts = Vec::new();
+        if let Some((_, maps)) = &self.maps {
+            let named = [("caustic map", &maps.caustic), ("global map", &maps.global)];
+            facts.extend(named.map(|(label, map)| {
+                Fact {
+                    label,
+                    value: map
+                        .as_ref()
+                        .map_or("not built: nothing reads it".to_owned(), describe),
+                }
+            }));
+        }
+        if let Some(cache) = self.cache() {
+            let (records, bytes) = (cache.records().len(), cache.memory_bytes());
+            facts.push(Fact {
+                label: "irradiance cache",
+                value: format!("{records} records, {bytes} bytes"),
+            });
+        }
+        facts
+    }
+
+    fn photons(&self) -> Option<PhotonView> {
+        self.maps
+            .is_some()
+            .then(|| PhotonView::new(self.tiled.estimator()))
+    }
+}
+
+fn describe(map: &PhotonMap) -> String {
+    let counts = &map.counts;
+    let [r, g, b] = counts.power;
+    let aim = match map.kind {
+        MapKind::Caustic => " toward mirrors, glass and gloss",
+        MapKind::Global => "",
+    };
+    format!(
+        "{} photons of {} emitted{aim}, power {r:.4} {g:.4} {b:.4} W, {} bytes",
+        counts.stored,
+        counts.emitted,
+        map.memory_bytes()
+    )
+}

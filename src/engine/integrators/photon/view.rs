@@ -1,0 +1,114 @@
+//! What photon mapping knows, for display: photons, queries, gather rays, cache records.
+
+use std::sync::Arc;
+
+use super::gather::GatherRay;
+use super::walk::Estimator;
+use crate::engine::geometry::SurfaceInteraction;
+use crate::engine::integrators::{Pass, RenderStats};
+use crate::engine::math::Rgb;
+use crate::engine::photon::irradiance_cache::IrradianceCache;
+use crate::engine::photon::{Disc, MapKind, Nearest, PhotonMap, PhotonMaps, Weighed};
+use crate::engine::sampling::{IndependentSampler, Stream};
+use crate::engine::scene::Scene;
+
+/// A snapshot; it shares its photons with the render.
+#[derive(Clone)]
+pub struct PhotonView(Estimator);
+
+/// The photons of an estimate.
+#[derive(Clone, Debug)]
+pub struct PhotonQuery {
+    /// Where and on which side.
+    pub disc: Disc,
+    /// Radius of the disc that holds them.
+    pub radius: f32,
+    /// They, by place in the map's tree, with their weights; [`PhotonMap::photon`] tells the rest.
+    pub photons: Vec<Weighed>,
+    /// The radiance estimated from them, toward where the surface was seen from.
+    pub radiance: Rgb,
+}
+
+impl PhotonView {
+    pub(super) fn new(estimator: &Estimator) -> Self {
+        Self(estimator.clone())
+    }
+
+    /// The photons.
+    pub fn maps(&self) -> &Arc<PhotonMaps> {
+        &self.0.maps
+    }
+
+    /// A map, if it was built.
+    pub fn map(&self, kind: MapKind) -> Option<&PhotonMap> {
+        match kind {
+            MapKind::Caustic => self.0.maps.caustic.as_ref(),
+            MapKind::Global => self.0.maps.global.as_ref(),
+        }
+    }
+
+    /// The records of interpolated gathers, if there are any.
+    pub fn cache(&self) -> Option<&IrradianceCache> {
+        self.0.cache.as_deref()
+    }
+
+    /// The estimate of a map at `si` as a render makes it where the eye looks.
+    pub fn query(
+        &self,
+        scene: &Scene,
+        si: &SurfaceInteraction,
+        kind: MapKind,
+    ) -> Option<PhotonQuery> {
+        let (map, settings) = (self.map(kind)?, self.0.settings?);
+        let max_radius = match kind {
+            MapKind::Caustic => self.0.radii[0],
+            MapKind::Global => self.0.radii[1],
+        };
+        let disc = Disc::new(si, max_radius, true);
+        let (radius, photons) = map.inspect(&disc, self.0.nearest, settings.kernel);
+        let (bsdf, mut radiance) = (scene.bsdf(si), Rgb::BLACK);
+        let mut nearest = Nearest::new(self.0.nearest);
+        map.estimate(si, &bsdf, &disc, settings.kernel, &mut nearest, |c| {
+            radiance += c.radiance
+        });
+        Some(PhotonQuery {
+            disc,
+            radius,
+            photons,
+            radiance,
+        })
+    }
+
+    /// The rays of a gather at `si` and the radiance that they bring.
+    pub fn gather(&self, cx: &Pass<'_>, si: &SurfaceInteraction) -> (Vec<GatherRay>, Rgb) {
+        let (mut rays, mut stats) = (Vec::new(), RenderStats::default());
+        let mut scratch = self.0.scratch();
+        let bsdf = cx.scene.bsdf(si);
+        let numbers = IndependentSampler::new(cx.seed, Stream::Gather, (0, 0));
+        let all = u32::MAX;
+        self.0.gather(
+            cx,
+            si,
+            &bsdf,
+            all,
+            numbers,
+            &mut scratch,
+            &mut stats,
+            &mut rays,
+        );
+        (
+            rays,
+            scratch.sums.iter().map(|(_, radiance)| *radiance).sum(),
+        )
+    }
+}
+
+impl std::fmt::Debug for PhotonView {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let count = |map: &Option<PhotonMap>| map.as_ref().map(PhotonMap::len);
+        f.debug_struct("PhotonView")
+            .field("caustic", &count(&self.0.maps.caustic))
+            .field("global", &count(&self.0.maps.global))
+            .finish()
+    }
+}

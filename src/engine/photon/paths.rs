@@ -1,0 +1,62 @@
+//! The first pass once more, photon by photon: for those who want to see photons land.
+
+use glam::Vec3A;
+
+use super::emission::Emission;
+use super::map::{MapSettings, PhotonMap, follow};
+use super::record::Photon;
+use super::trace::{Walks, Witness};
+use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::path::PathClasses;
+use crate::engine::scene::Scene;
+
+/// The way of one photon.
+#[derive(Clone, Debug, Default)]
+pub struct PhotonPath {
+    /// Where it left the light, met surfaces, and, where it left the scene, a point on its last
+    /// ray.
+    pub points: Vec<Vec3A>,
+    /// What of it was stored, in full precision.
+    pub stored: Vec<Photon>,
+}
+
+impl Witness for PhotonPath {
+    fn stored(&mut self, photon: Photon, _si: &SurfaceInteraction, _u: f32) {
+        self.stored.push(photon);
+    }
+
+    fn travelled(&mut self, ray: &Ray, si: Option<&SurfaceInteraction>) {
+        if self.points.is_empty() {
+            self.points.push(ray.o);
+        }
+        self.points.push(si.map_or(ray.at(1.0), |si| si.p));
+    }
+}
+
+impl PhotonMap {
+    /// The ways of the photons of numbers `range` that this map was made of; `settings` and
+    /// `emission` are those it was built with.
+    pub fn paths(
+        &self,
+        scene: &Scene,
+        classes: &PathClasses,
+        emission: &Emission,
+        settings: &MapSettings,
+        range: std::ops::Range<u64>,
+    ) -> Vec<PhotonPath> {
+        let walks = Walks {
+            scene,
+            classes,
+            kind: self.kind,
+            roulette: settings.roulette,
+            emission,
+        };
+        let share = (1.0 / self.counts.emitted.max(1) as f64) as f32;
+        let one = |number| {
+            let mut path = PhotonPath::default();
+            follow(&walks, settings, (false, number), share, &mut path);
+            path
+        };
+        range.map(one).collect()
+    }
+}

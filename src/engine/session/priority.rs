@@ -1,0 +1,14 @@
+//! Threads that render give way to the window's and to the graphics driver's, which may be
+//! software on the same cores.
+
+/// Steps of niceness: a thread that waits for input gets about ten times the share.
+#[cfg(target_os = "linux")]
+const NICENESS: i32 = 10;
+
+/// Lowers the priority of the calling thread where the system has one for threads.
+pub(super) fn lower() {
+    // On Linux niceness belongs to threads; elsewhere it is the whole process's. A system that
+    // refuses leaves all threads equal.
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::nice(NICENESS);
+}
