@@ -29,13 +29,14 @@ fn bits(frame: &Frame) -> Vec<u32> {
 }
 
 #[test]
-fn one_thread_and_eight_give_the_same_bits_in_every_layer() {
+fn one_thread_and_several_give_the_same_bits_in_every_layer() {
     for scene in ["cornell-glass", "cornell-glossy", "caustic-ring"] {
         let scene = load(&scene_path(scene));
         for entry in REGISTRY {
-            let job = job(&scene, entry.id, &[]);
+            let mut job = job(&scene, entry.id, &[]);
+            job.size = UVec2::new(40, 24);
             let one = render_with_threads(&job, 3, 1);
-            for threads in [2, 8, 16] {
+            for threads in [2, 7] {
                 let many = render_with_threads(&job, 3, threads);
                 assert_eq!(one.stats, many.stats);
                 assert!(

@@ -59,7 +59,7 @@ struct LeftOut {
 #[derive(Serialize)]
 struct Missing {
     integrator: &'static str,
-    words: &'static str,
+    words: String,
     why: &'static str,
 }
 
@@ -91,7 +91,7 @@ fn scene_info(name: &str) -> Result<SceneInfo, CliError> {
         let missing = (entry.missing)(&scene.features, &params)?;
         Some(Missing {
             integrator: entry.id,
-            words: missing.words,
+            words: missing.words.into_owned(),
             why: missing.why,
         })
     });

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::args::{ListArgs, Listing};
 use super::error::CliError;
 use super::{print, scene};
-use crate::engine::integrators::{Entry, ParamKind, ParamSpec, Params, REGISTRY};
+use crate::engine::integrators::{Entry, Missing, ParamKind, ParamSpec, Params, REGISTRY};
 use crate::engine::scene::SceneFeatures;
 
 /// Runs the command.
@@ -51,7 +51,7 @@ pub struct Param {
 pub struct MissingWords {
     /// In which scenes, with which parameters.
     when: String,
-    words: &'static str,
+    words: String,
     why: &'static str,
 }
 
@@ -107,45 +107,52 @@ fn param(spec: &ParamSpec) -> Param {
     }
 }
 
-/// What the integrator loses where a light has no size: with its defaults, then with each word of
-/// a choice that makes a difference.
+/// What the integrator loses in any scene, where a light has no size, and where there is a sky: with
+/// its defaults, then with each word of a choice that makes a difference.
 fn missing(entry: &Entry) -> Vec<MissingWords> {
-    let features = SceneFeatures {
+    let any = SceneFeatures {
         diffuse: true,
         glossy: true,
         specular: true,
-        zero_size_lights: true,
+        hittable_lights: true,
         ..SceneFeatures::default()
     };
+    let zero_size = SceneFeatures {
+        zero_size_lights: true,
+        ..any
+    };
+    let sky = SceneFeatures {
+        environment: true,
+        ..any
+    };
     let defaults = Params::defaults(entry.params);
-    let usual = (entry.missing)(&features, &defaults);
-    let lights = "lights of zero size";
-    let mut rows: Vec<MissingWords> = usual
-        .iter()
-        .map(|m| MissingWords {
-            when: lights.to_owned(),
-            words: m.words,
+    let always = (entry.missing)(&any, &defaults);
+    let mut rows: Vec<MissingWords> = Vec::new();
+    let mut add = |when: String, lost: Option<Missing>| {
+        rows.extend(lost.map(|m| MissingWords {
+            when,
+            words: m.words.into_owned(),
             why: m.why,
-        })
-        .collect();
-    for spec in entry.params {
-        let ParamKind::Choice(words) = spec.kind else {
-            continue;
-        };
-        for word in words {
-            let mut params = defaults.clone();
-            if params.set(entry.params, spec.name, word).is_err() {
+        }));
+    };
+    add("any lights".to_owned(), always.clone());
+    for (when, features) in [("lights of zero size", zero_size), ("a sky", sky)] {
+        let usual = (entry.missing)(&features, &defaults);
+        let differs = |m: &Missing| always.as_ref() != Some(m);
+        add(when.to_owned(), usual.clone().filter(differs));
+        for spec in entry.params {
+            let ParamKind::Choice(words) = spec.kind else {
                 continue;
-            }
-            if let Some(m) =
-                (entry.missing)(&features, &params).filter(|m| usual.as_ref() != Some(m))
-            {
-                let when = format!("{lights} and {}={word}", spec.name);
-                rows.push(MissingWords {
-                    when,
-                    words: m.words,
-                    why: m.why,
-                });
+            };
+            for word in words {
+                let mut params = defaults.clone();
+                if params.set(entry.params, spec.name, word).is_err() {
+                    continue;
+                }
+                let lost = (entry.missing)(&features, &params);
+                let differs = |m: &Missing| usual.as_ref() != Some(m);
+                let when = format!("{when} and {}={word}", spec.name);
+                add(when, lost.filter(differs));
             }
         }
     }

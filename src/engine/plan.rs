@@ -128,6 +128,12 @@ impl RenderPlan {
         !self.whole && self.classes.reachable_from_eye(suffix) & self.planned == 0
     }
 
+    /// True if no path that begins with the events of `prefix` reaches a layer that is asked for.
+    #[inline]
+    pub fn is_pointless_from_light(&self, prefix: ClassId) -> bool {
+        !self.whole && self.classes.reachable_from_light(prefix) & self.planned == 0
+    }
+
     fn reasons(&self, lit: bool, possible: u32) -> Vec<LeftOut> {
         let mut list = Vec::new();
         let mut leave = |what: &str, why: &str| {

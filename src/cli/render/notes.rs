@@ -46,6 +46,12 @@ pub struct Figures {
     error: Option<f64>,
     non_finite: u64,
     cut_paths: u64,
+    /// Trees of rays cut at their largest number.
+    cut_trees: u64,
+    /// Rays of walks from the eye by the number of events before them, up to the last that has any.
+    rays_by_level: Vec<u64>,
+    /// Share of the mutations of Markov chains that were accepted.
+    acceptance: Option<f64>,
     /// Against the reference.
     #[serde(flatten)]
     reference: Option<Metrics>,
@@ -64,6 +70,9 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
         error: frame.relative_error,
         non_finite: frame.stats.non_finite,
         cut_paths: frame.stats.cut_paths,
+        cut_trees: frame.stats.cut_trees,
+        rays_by_level: frame.stats.levels().to_vec(),
+        acceptance: frame.stats.acceptance(),
         reference: reference.copied(),
     }
 }
@@ -81,6 +90,16 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
         figure(f.mrays_per_second),
         figure(f.samples_per_second),
     );
+    if !f.rays_by_level.is_empty() {
+        let levels: Vec<String> = f.rays_by_level.iter().map(u64::to_string).collect();
+        eprintln!(
+            "rays from the eye after 0, 1, 2 … events: {}",
+            levels.join(" ")
+        );
+    }
+    if let Some(acceptance) = f.acceptance {
+        eprintln!("accepted mutations: {} %", figure(100.0 * acceptance));
+    }
     if let Some(m) = reference {
         let nmse = m.nmse.map_or("undefined".to_owned(), figure);
         let (rmse, relmse) = (figure(m.rmse), figure(m.relmse));
@@ -97,6 +116,19 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
         eprintln!(
             "warning: {} paths were cut at the largest number of events",
             f.cut_paths
+        );
+    }
+    if frame.stats.dark_starts > 0 {
+        eprintln!(
+            "warning: no independent sample found light, so that the Markov chains had nowhere to \
+             start from and what they add is black; raise bootstrap"
+        );
+    }
+    if f.cut_trees > 0 {
+        eprintln!(
+            "warning: {} of {} trees of rays were cut at their largest number: the picture is too \
+             dark; raise max-rays, or lower rays or depth",
+            f.cut_trees, frame.stats.samples
         );
     }
 }

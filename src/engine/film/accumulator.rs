@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::frame::FrameLayer;
 use super::pass_buffer::{PassBuffer, PassTile};
+use super::splats::SplatBuffer;
 use super::tiles::{TILE_PIXELS, Tiles};
 
 type Plane = Box<[[f64; 3]; TILE_PIXELS]>;
@@ -16,6 +17,8 @@ pub struct Film {
     planned: u32,
     data: Vec<FilmTile>,
     passes: u64,
+    /// What the means are multiplied by.
+    scale: f64,
 }
 
 /// Invariant: what planes hold counts only once the film has a pass. The first one makes them
@@ -61,6 +64,23 @@ impl FilmTile {
         }
     }
 
+    /// Adds the sums of splats of pass number `index`. They begin the pass, or follow its samples.
+    fn add_splats(&mut self, splats: &[[[f64; 3]; TILE_PIXELS]], index: u64, begin: bool) {
+        let planes = splats.len() + 1;
+        if begin && index == 0 {
+            self.planes.clear();
+            self.planes
+                .resize_with(planes, || Box::new([[0.0; 3]; TILE_PIXELS]));
+            self.rejected = None;
+        }
+        for (sums, values) in self.planes.iter_mut().zip(splats) {
+            add_sums(sums, values);
+        }
+        if index.is_multiple_of(2) {
+            add_sums(&mut self.planes[planes - 1], &splats[0]);
+        }
+    }
+
     /// Finite samples of the pixel at `place` among `passes` passes, of the even and odd ones.
     fn counts(&self, place: usize, passes: u64) -> [u64; 2] {
         let rejected = self.rejected.as_ref().map_or([0; 2], |r| r[place]);
@@ -85,6 +105,14 @@ fn add_plane(sums: &mut [[f64; 3]; TILE_PIXELS], values: &[[f32; 3]; TILE_PIXELS
     }
 }
 
+fn add_sums(sums: &mut [[f64; 3]; TILE_PIXELS], values: &[[f64; 3]; TILE_PIXELS]) {
+    for (s, v) in sums.iter_mut().zip(values) {
+        for c in 0..3 {
+            s[c] += v[c];
+        }
+    }
+}
+
 impl Film {
     /// An empty film of `size` pixels for the whole and the layers of the bit mask `planned`.
     pub fn new(size: UVec2, planned: u32) -> Self {
@@ -94,6 +122,7 @@ impl Film {
             planned,
             data: vec![FilmTile::default(); tiles.len()],
             passes: 0,
+            scale: 1.0,
         }
     }
 
@@ -101,6 +130,7 @@ impl Film {
     /// returning and asking for a hundred megabytes takes longer than a coarse frame.
     pub fn reuse(mut self, size: UVec2, planned: u32) -> Option<Self> {
         self.passes = 0;
+        self.scale = 1.0;
         (self.size() == size && self.planned == planned).then_some(self)
     }
 
@@ -131,6 +161,26 @@ impl Film {
         self.passes += 1;
     }
 
+    /// Adds a completed pass of splats, and of camera samples if it had any. The splats of a pass
+    /// add up to one more sample of every pixel.
+    pub fn commit_splats(&mut self, samples: Option<&PassBuffer>, splats: &SplatBuffer) {
+        debug_assert!(splats.fits(self.size(), self.planned));
+        let index = self.passes;
+        self.data.par_iter_mut().enumerate().for_each(|(i, film)| {
+            if let Some(samples) = samples {
+                film.add(&samples.data()[i], index);
+            }
+            film.add_splats(splats.tile(i), index, samples.is_none());
+        });
+        self.passes += 1;
+    }
+
+    /// Sets what all means are multiplied by: for sums whose normalisation is itself estimated,
+    /// and becomes better known with every pass.
+    pub fn set_scale(&mut self, scale: f64) {
+        self.scale = scale;
+    }
+
     /// The mean radiance of plane `plane` (0 the whole, then the planned layers), row by row from
     /// the top. A pixel without any finite sample is NaN, for the display to mark.
     fn resolve_plane(&self, plane: usize, out: &mut Vec<[f32; 3]>) {
@@ -150,7 +200,7 @@ impl Film {
                     let tile = &self.data[t];
                     for (place, pixel) in self.tiles.pixels(t) {
                         let [even, odd] = tile.counts(place, self.passes);
-                        let scale = 1.0 / (even + odd) as f64;
+                        let scale = self.scale / (even + odd) as f64;
                         let sum = tile.planes[plane][place];
                         rows[((pixel.y - top) * size.x + pixel.x) as usize] =
                             sum.map(|s| (s * scale) as f32);

@@ -45,16 +45,13 @@ impl SurfaceInteraction {
     #[inline]
     pub fn spawn_ray_to(&self, target: Vec3A) -> Ray {
         let o = offset_origin(self.p, self.p_error, self.n_g, target - self.p);
-        let to = target - o;
-        let t = to.length();
-        Ray {
-            o,
-            d: to / t,
-            t_max: t * (1.0 - SHADOW_SHORTENING),
-        }
+        Ray::between(o, target)
+    }
+
+    /// A ray to the point `other` of another surface, clear of both.
+    #[inline]
+    pub fn spawn_ray_to_surface(&self, other: &Self) -> Ray {
+        let toward = self.p - other.p;
+        self.spawn_ray_to(offset_origin(other.p, other.p_error, other.n_g, toward))
     }
 }
-
-/// Relative shortening of a ray between two points: covers the rounding of its direction and
-/// length, a few operations of γ₃ each.
-const SHADOW_SHORTENING: f32 = 8.0 * f32::EPSILON;

@@ -3,17 +3,28 @@
 //!
 //! Adding one is a file with an [`Entry`] and a line in [`REGISTRY`].
 
+pub mod bdpt;
+pub mod bidirectional;
+pub mod light;
+pub mod monte_carlo;
 pub mod params;
 pub mod pass;
 pub mod path;
 pub mod photon;
+pub mod pssmlt;
+pub mod pyramid;
+pub mod sppm;
 pub mod stats;
 pub mod tiled;
+pub mod vcm;
+pub mod whitted;
 
 pub use params::{ParamKind, ParamSpec, ParamValue, Params};
 pub use pass::{Cancel, Cancelled, Pass};
 pub use photon::PhotonView;
 pub use stats::{BadSample, RenderStats};
+
+use std::borrow::Cow;
 
 use crate::engine::film::Film;
 use crate::engine::scene::features::SceneFeatures;
@@ -78,13 +89,32 @@ pub struct Entry {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
     /// An expression that the lost words match.
-    pub words: &'static str,
+    pub words: Cow<'static, str>,
     /// Why, in one sentence.
     pub why: &'static str,
 }
 
 /// Every integrator, in the order of the window's list.
-pub const REGISTRY: &[Entry] = &[path::ENTRY, photon::ENTRY];
+pub const REGISTRY: &[Entry] = &[
+    path::ENTRY,
+    whitted::ENTRY,
+    monte_carlo::ENTRY,
+    light::ENTRY,
+    bdpt::ENTRY,
+    pssmlt::ENTRY,
+    photon::ENTRY,
+    sppm::ENTRY,
+    vcm::ENTRY,
+];
+
+/// The parameter that [`tiled::SamplerKind`] reads.
+const SAMPLER_PARAM: ParamSpec = ParamSpec {
+    name: "sampler",
+    kind: ParamKind::Choice(&["sobol", "independent"]),
+    default: "sobol",
+    unit: "",
+    doc: "Owen-scrambled Sobol points, or independent random numbers.",
+};
 
 /// The integrator of that id.
 pub fn find(id: &str) -> Option<&'static Entry> {

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use super::bidirectional::{Heuristic, Strategies};
+
 /// What a parameter may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParamKind {
@@ -14,6 +16,8 @@ pub enum ParamKind {
     Integer(i64, i64),
     /// A number in this range, ends included.
     Number(f64, f64),
+    /// Strategies of bidirectional path tracing, in the words of [`Strategies`].
+    Strategies,
 }
 
 /// Description of a parameter.
@@ -42,6 +46,8 @@ pub enum ParamValue {
     Integer(i64),
     /// A number.
     Number(f64),
+    /// Strategies, as they were typed.
+    Strategies(String),
 }
 
 impl fmt::Display for ParamValue {
@@ -51,6 +57,7 @@ impl fmt::Display for ParamValue {
             Self::Switch(on) => f.write_str(if *on { "on" } else { "off" }),
             Self::Integer(i) => write!(f, "{i}"),
             Self::Number(x) => write!(f, "{x}"),
+            Self::Strategies(text) => f.write_str(text),
         }
     }
 }
@@ -75,6 +82,10 @@ impl ParamSpec {
                 let in_range = |v: &i64| (lo..=hi).contains(v);
                 text.parse().ok().filter(in_range).map(ParamValue::Integer)
             }
+            ParamKind::Strategies => text
+                .parse::<Strategies>()
+                .is_ok()
+                .then(|| ParamValue::Strategies(text.to_owned())),
             ParamKind::Number(lo, hi) => {
                 let in_range = |v: &f64| (lo..=hi).contains(v);
                 text.parse().ok().filter(in_range).map(ParamValue::Number)
@@ -100,6 +111,12 @@ impl ParamSpec {
             ParamKind::Choice(words) => format!("one of {}", words.join(", ")),
             ParamKind::Switch => "on or off".to_owned(),
             ParamKind::Integer(lo, hi) => format!("an integer from {lo} to {hi}{unit}"),
+            ParamKind::Strategies => {
+                "all, all but some (all-0,2-*,1) or some (1,2+0,2), where s,t \
+                 are numbers of vertices from the light (0 to 30) and from the lens (1 to 30), * \
+                 any number"
+                    .to_owned()
+            }
             ParamKind::Number(lo, hi) => format!("a number from {lo} to {hi}{unit}"),
         }
     }
@@ -159,6 +176,23 @@ impl Params {
             Some(ParamValue::Number(x)) => *x,
             _ => 0.0,
         }
+    }
+
+    /// Value of `name` as it would be typed; empty if there is none.
+    pub fn text(&self, name: &str) -> String {
+        self.0
+            .get(name)
+            .map(ToString::to_string)
+            .unwrap_or_default()
+    }
+
+    /// Strategies `name`; all of them if there is no such parameter.
+    pub fn strategies(&self, name: &str) -> Strategies {
+        match self.0.get(name) {
+            Some(ParamValue::Strategies(text)) => text.parse().ok(),
+            _ => None,
+        }
+        .unwrap_or(Strategies::all(Heuristic::Power))
     }
 
     /// Names and values, sorted by name.

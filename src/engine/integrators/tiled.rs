@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
-use super::{BadSample, Cancelled, Integrator, Pass, RenderStats};
+use super::{BadSample, Cancelled, Integrator, Params, Pass, RenderStats};
 use crate::engine::film::pass_buffer::PassTile;
 use crate::engine::film::{Film, PassBuffer, SampleRadiance};
 use crate::engine::geometry::Ray;
@@ -32,6 +32,16 @@ pub enum SamplerKind {
     Independent,
     /// Owen-scrambled Sobol points.
     Sobol,
+}
+
+impl SamplerKind {
+    /// What the parameter `sampler` says.
+    pub fn of(params: &Params) -> Self {
+        match params.choice("sampler") {
+            "independent" => Self::Independent,
+            _ => Self::Sobol,
+        }
+    }
 }
 
 /// A [`RayIntegrator`] run over all pixels.
@@ -116,12 +126,10 @@ impl<T: RayIntegrator> Tiled<T> {
         for (place, pixel) in tiles.pixels(index) {
             self.sample(cx, pixel, &mut out, &mut stats);
             if !tile.put(place, planned, &out) {
-                stats.non_finite += 1;
-                let bad = BadSample {
+                stats.add_bad(BadSample {
                     pixel,
                     pass: cx.index,
-                };
-                stats.first_non_finite = stats.first_non_finite.or(Some(bad));
+                });
             }
         }
         stats

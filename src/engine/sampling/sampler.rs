@@ -16,6 +16,12 @@ pub enum Stream {
     Test = 4,
     /// Gather rays: the index is drawn by the sample they belong to, or made of a record's place.
     Gather = 5,
+    /// Mutations of Markov chains: the index is a chain and a step.
+    Chain = 6,
+    /// Independent samples that chains start from and their normalisation is estimated by.
+    Bootstrap = 7,
+    /// Light paths whose vertices are merged: the index is a path number.
+    Photon = 8,
 }
 
 /// Uniform numbers in [0, 1) for one sample, dimension after dimension.

@@ -75,13 +75,19 @@ impl Scene {
         } else {
             si.spawn_ray(light.wi)
         };
-        if !self.features.opacity {
-            return f32::from(u8::from(!self.geometry.occluded(&ray)));
-        }
         self.transmittance_along(ray)
     }
 
-    fn transmittance_along(&self, mut ray: Ray) -> f32 {
+    /// The share of light that gets through along `ray`, up to its end.
+    #[inline]
+    pub fn transmittance_along(&self, ray: Ray) -> f32 {
+        if !self.features.opacity {
+            return f32::from(u8::from(!self.geometry.occluded(&ray)));
+        }
+        self.transmittance_through(ray)
+    }
+
+    fn transmittance_through(&self, mut ray: Ray) -> f32 {
         let mut transmittance = 1.0;
         for _ in 0..MAX_CROSSINGS {
             let Some(hit) = self.geometry.intersect(&ray) else {

@@ -1,6 +1,6 @@
 //! A control for each parameter of an integrator, made from its description.
 
-use egui::{ComboBox, Slider, Ui};
+use egui::{ComboBox, Slider, TextEdit, Ui};
 
 use super::widgets;
 use crate::engine::integrators::{ParamKind, ParamSpec, Params};
@@ -16,6 +16,7 @@ pub fn show(ui: &mut Ui, specs: &'static [ParamSpec], params: &mut Params) {
             ParamKind::Switch => switch(ui, spec, params),
             ParamKind::Integer(lo, hi) => integer(ui, spec, lo, hi, params),
             ParamKind::Number(lo, hi) => number(ui, spec, lo, hi, params),
+            ParamKind::Strategies => words(ui, spec, params),
         };
         if let Some(text) = text {
             // The controls offer only what the description allows.
@@ -97,6 +98,30 @@ fn number(ui: &mut Ui, spec: &ParamSpec, lo: f64, hi: f64, params: &Params) -> O
         .suffix(suffix(spec));
     let changed = ui.add(slider).on_hover_text(tooltip(spec)).changed();
     changed.then(|| value.to_string())
+}
+
+/// A line of text; what cannot be read stays in it, marked, until it is mended.
+fn words(ui: &mut Ui, spec: &ParamSpec, params: &Params) -> Option<String> {
+    let id = ui.scope_id().with(spec.name);
+    let stored = params.text(spec.name);
+    let typed = ui.data_mut(|d| d.get_temp::<String>(id));
+    let mut text = typed.unwrap_or_else(|| stored.clone());
+    let wrong = spec.parse(&text).is_err();
+    let response = ui
+        .horizontal(|ui| {
+            let name = ui.label(label(spec));
+            let color = wrong.then(|| ui.visuals().error_fg_color);
+            let edit = TextEdit::singleline(&mut text).text_color_opt(color);
+            ui.add(edit).labelled_by(name.id)
+        })
+        .inner
+        .on_hover_text(tooltip(spec));
+    if response.has_focus() || wrong {
+        ui.data_mut(|d| d.insert_temp(id, text.clone()));
+    } else {
+        ui.data_mut(|d| d.remove::<String>(id));
+    }
+    (response.changed() && text != stored && spec.parse(&text).is_ok()).then_some(text)
 }
 
 fn suffix(spec: &ParamSpec) -> String {

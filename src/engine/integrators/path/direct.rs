@@ -1,5 +1,7 @@
 //! Light found by shadow rays.
 
+use glam::Vec2;
+
 use super::walk::Walk;
 use super::{Mode, PathTracer};
 use crate::engine::bsdf::{Bsdf, Transport};
@@ -9,6 +11,13 @@ use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
 use crate::engine::sampling::{Sampler, mis};
 
+/// The point `u` of the square for light number `i`, where one point serves all lights: turned by
+/// the golden ratio's relative in two dimensions (Roberts 2018, *The Unreasonable Effectiveness of
+/// Quasirandom Sequences*).
+pub(in crate::engine::integrators) fn turned(u: Vec2, i: usize) -> Vec2 {
+    (u + Vec2::new(i as f32 * 0.754_877_7, i as f32 * 0.569_840_3)).fract()
+}
+
 impl PathTracer {
     /// Next event estimation at `si`: in mode `mis` toward one light chosen at random, in mode
     /// `kajiya` toward every light.
@@ -16,7 +25,7 @@ impl PathTracer {
         clippy::too_many_arguments,
         reason = "the state of one walk; a struct would be made and taken apart once a vertex"
     )]
-    pub(super) fn add_direct<S: Sampler>(
+    pub(in crate::engine::integrators) fn add_direct<S: Sampler>(
         &self,
         cx: &Pass<'_>,
         walk: &Walk,
@@ -39,8 +48,7 @@ impl PathTracer {
         }
         // One point of the square serves all lights, turned by a number of each light's own.
         for (i, light) in lights.as_slice().iter().enumerate() {
-            let shift = glam::Vec2::new(i as f32 * 0.754_877_7, i as f32 * 0.569_840_3);
-            if let Some(sample) = light.sample_li(si.p, (u + shift).fract()) {
+            if let Some(sample) = light.sample_li(si.p, turned(u, i)) {
                 self.add_light_sample(cx, walk, si, bsdf, &sample, 1.0, out, stats);
             }
         }

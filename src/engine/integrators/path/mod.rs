@@ -10,6 +10,9 @@
 mod direct;
 mod walk;
 
+pub(super) use direct::turned;
+pub(super) use walk::Walk;
+
 use super::tiled::{SamplerKind, Tiled};
 use super::{Entry, Integrator, Missing, ParamKind, ParamSpec, Params};
 use crate::engine::scene::features::SceneFeatures;
@@ -26,21 +29,8 @@ pub const ENTRY: Entry = Entry {
 };
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        name: "mode",
-        kind: ParamKind::Choice(&["mis", "kajiya", "hits"]),
-        default: "mis",
-        unit: "",
-        doc: "How lights are found: by shadow rays and hits weighed together, by a shadow ray to \
-              every light, or by hits alone.",
-    },
-    ParamSpec {
-        name: "sampler",
-        kind: ParamKind::Choice(&["sobol", "independent"]),
-        default: "sobol",
-        unit: "",
-        doc: "Owen-scrambled Sobol points, or independent random numbers.",
-    },
+    MODE_PARAM,
+    super::SAMPLER_PARAM,
     ParamSpec {
         name: "roulette",
         kind: ParamKind::Integer(0, 10_000_000),
@@ -51,9 +41,19 @@ const PARAMS: &[ParamSpec] = &[
     },
 ];
 
+/// How lights are found.
+pub(super) const MODE_PARAM: ParamSpec = ParamSpec {
+    name: "mode",
+    kind: ParamKind::Choice(&["mis", "kajiya", "hits"]),
+    default: "mis",
+    unit: "",
+    doc: "How lights are found: by shadow rays and hits weighed together, by a shadow ray to \
+          every light, or by hits alone.",
+};
+
 /// How a walk finds light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mode {
+pub(super) enum Mode {
     Mis,
     Kajiya,
     Hits,
@@ -61,37 +61,52 @@ enum Mode {
 
 /// The estimator behind the entry.
 #[derive(Clone, Copy, Debug)]
-struct PathTracer {
+pub(super) struct PathTracer {
     mode: Mode,
     roulette: u32,
 }
 
+impl Mode {
+    /// What the parameter `mode` says.
+    pub(super) fn of(params: &Params) -> Self {
+        match params.choice("mode") {
+            "hits" => Self::Hits,
+            "kajiya" => Self::Kajiya,
+            _ => Self::Mis,
+        }
+    }
+}
+
+impl PathTracer {
+    /// For those who take its estimates at single vertices.
+    pub(super) fn of_mode(mode: Mode) -> Self {
+        Self { mode, roulette: 0 }
+    }
+}
+
 fn build(params: &Params) -> Box<dyn Integrator> {
-    let mode = match params.choice("mode") {
-        "hits" => Mode::Hits,
-        "kajiya" => Mode::Kajiya,
-        _ => Mode::Mis,
-    };
-    let sampler = match params.choice("sampler") {
-        "independent" => SamplerKind::Independent,
-        _ => SamplerKind::Sobol,
-    };
+    let mode = Mode::of(params);
+    let sampler = SamplerKind::of(params);
     let roulette = u32::try_from(params.integer("roulette")).unwrap_or(u32::MAX);
     Box::new(Tiled::new(PathTracer { mode, roulette }, sampler))
 }
 
-fn missing(features: &SceneFeatures, params: &Params) -> Option<Missing> {
+/// Words that neither shadow rays nor hits find.
+pub(super) fn missing(features: &SceneFeatures, params: &Params) -> Option<Missing> {
     if !features.zero_size_lights {
         return None;
     }
     if params.choice("mode") == "hits" {
         let why = "a walk never meets a light of zero size by chance";
-        return Some(Missing { words: "L.*E", why });
+        return Some(Missing {
+            words: "L.*E".into(),
+            why,
+        });
     }
     let why = "light of a point, spot or directional source that first meets a mirror or glass \
                arrives by no shadow ray and by no chance hit";
     features.specular.then_some(Missing {
-        words: "LS.*E",
+        words: "LS.*E".into(),
         why,
     })
 }

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::{Mode, PathTracer};
-use crate::engine::bsdf::Transport;
+use crate::engine::bsdf::{BsdfSample, Transport};
 use crate::engine::event::Event;
 use crate::engine::film::SampleRadiance;
 use crate::engine::geometry::{Ray, SurfaceInteraction};
@@ -22,7 +22,7 @@ const VERTEX_DIMENSIONS: u32 = 8;
 const MAX_SURVIVAL: f32 = 0.9999;
 
 /// The state of a walk between two vertices.
-pub(super) struct Walk {
+pub(in crate::engine::integrators) struct Walk {
     /// Product of f·cosθ/pdf over the events so far, survival divided out.
     pub throughput: Rgb,
     /// Class of the events so far, the light side still open.
@@ -33,6 +33,51 @@ pub(super) struct Walk {
     eta2: f32,
     /// Where the last event happened, and how.
     last: Option<Scattered>,
+}
+
+impl Walk {
+    /// A walk that has left the lens.
+    pub fn start() -> Self {
+        Self {
+            throughput: Rgb::WHITE,
+            suffix: ClassId::EMPTY,
+            depth: 0,
+            eta2: 1.0,
+            last: None,
+        }
+    }
+
+    /// This walk after one more event, `sample` at `si`, as one of several with the weight `share`.
+    pub fn after(
+        &self,
+        si: &SurfaceInteraction,
+        sample: &BsdfSample,
+        suffix: ClassId,
+        share: f32,
+    ) -> Self {
+        Self {
+            throughput: self.throughput * sample.weight * share,
+            suffix,
+            depth: self.depth + 1,
+            eta2: self.eta2 * sample.eta * sample.eta,
+            last: Some(Scattered {
+                p: si.p,
+                event: sample.event,
+                pdf_dir: sample.pdf_dir,
+            }),
+        }
+    }
+
+    /// Russian roulette after `from` events with the random number `u`; false if the walk ends.
+    /// Survival divides the throughput and enters no weight.
+    pub fn survives(&mut self, from: u32, u: f32) -> bool {
+        if self.depth <= from {
+            return !self.throughput.is_black();
+        }
+        let survival = (self.throughput.max_component() * self.eta2).min(MAX_SURVIVAL);
+        self.throughput *= 1.0 / survival;
+        u < survival
+    }
 }
 
 struct Scattered {
@@ -50,19 +95,13 @@ impl RayIntegrator for PathTracer {
         out: &mut SampleRadiance<'_>,
         stats: &mut RenderStats,
     ) {
-        let mut walk = Walk {
-            throughput: Rgb::WHITE,
-            suffix: ClassId::EMPTY,
-            depth: 0,
-            eta2: 1.0,
-            last: None,
-        };
+        let mut walk = Walk::start();
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let first = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * walk.depth;
 
             // The next surface, or the sky.
-            stats.rays += 1;
+            stats.ray_at(walk.depth);
             let Some(si) = cx.scene.intersect(&ray, || opacity_number(sampler, first)) else {
                 self.add_escaped(cx, &walk, &ray, out);
                 return;
@@ -83,7 +122,7 @@ impl RayIntegrator for PathTracer {
             if bsdf.is_empty() {
                 return;
             }
-            if self.mode != Mode::Hits && cx.plan.shadow_rays && bsdf.has_non_delta() {
+            if self.sends_shadow_rays(cx) && bsdf.has_non_delta() {
                 sampler.seek(first + 4);
                 self.add_direct(cx, &walk, &si, &bsdf, sampler, out, stats);
             }
@@ -96,29 +135,15 @@ impl RayIntegrator for PathTracer {
                 stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
                 return;
             };
-            walk.throughput *= sample.weight;
-            walk.eta2 *= sample.eta * sample.eta;
-            walk.suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
-            walk.depth += 1;
+            let suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
+            walk = walk.after(&si, &sample, suffix, 1.0);
             if cx.plan.is_pointless(walk.suffix) {
                 return;
             }
 
-            // Russian roulette: survival divides the throughput and enters no weight.
-            if walk.depth > self.roulette {
-                let survival = (walk.throughput.max_component() * walk.eta2).min(MAX_SURVIVAL);
-                if roulette >= survival {
-                    return;
-                }
-                walk.throughput *= 1.0 / survival;
-            } else if walk.throughput.is_black() {
+            if !walk.survives(self.roulette, roulette) {
                 return;
             }
-            walk.last = Some(Scattered {
-                p: si.p,
-                event: sample.event,
-                pdf_dir: sample.pdf_dir,
-            });
             ray = si.spawn_ray(sample.wi);
         }
     }
@@ -131,6 +156,11 @@ fn opacity_number<S: Sampler>(sampler: &mut S, first: u32) -> f32 {
 }
 
 impl PathTracer {
+    /// Whether shadow rays are part of the mode, and of the plan.
+    pub(in crate::engine::integrators) fn sends_shadow_rays(&self, cx: &Pass<'_>) -> bool {
+        self.mode != Mode::Hits && cx.plan.shadow_rays
+    }
+
     /// Weight of light that the walk met, against a shadow ray toward it of density `light_pdf`
     /// (selection included, 1/sr).
     fn hit_weight(&self, last: Option<&Scattered>, light_pdf: impl FnOnce(Vec3A) -> f32) -> f32 {
@@ -145,7 +175,8 @@ impl PathTracer {
         }
     }
 
-    fn add_emitted(
+    /// Light that the walk met at `si`.
+    pub(in crate::engine::integrators) fn add_emitted(
         &self,
         cx: &Pass<'_>,
         walk: &Walk,
@@ -165,7 +196,14 @@ impl PathTracer {
         out.add(walk.suffix, walk.throughput * emitted * weight);
     }
 
-    fn add_escaped(&self, cx: &Pass<'_>, walk: &Walk, ray: &Ray, out: &mut SampleRadiance<'_>) {
+    /// Light of the sky that the walk left the scene for.
+    pub(in crate::engine::integrators) fn add_escaped(
+        &self,
+        cx: &Pass<'_>,
+        walk: &Walk,
+        ray: &Ray,
+        out: &mut SampleRadiance<'_>,
+    ) {
         let lights = &cx.scene.lights;
         for &id in lights.environments() {
             let light = lights.get(id);

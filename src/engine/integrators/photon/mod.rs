@@ -40,7 +40,7 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     let why = "light of a point, spot or directional source that reaches the eye without a \
                diffuse surface on its way is met by no ray and lands as no photon";
     (features.zero_size_lights && features.specular).then_some(Missing {
-        words: "LS(S|G)*E",
+        words: "LS(S|G)*E".into(),
         why,
     })
 }

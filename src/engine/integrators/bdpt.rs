@@ -1,0 +1,390 @@
+//! Bidirectional path tracing (Lafortune and Willems 1993; Veach and Guibas 1994; Veach 1997,
+//! chapter 10).
+//!
+//! Each sample of a pixel is a walk from the lens and a walk from a light. Every vertex of the one
+//! is connected to every vertex of the other; the strategies that could have found the same path
+//! share it by multiple importance sampling. It fails where all connections do: paths S+ … S+
+//! between a light of zero size and the lens, and puddles of light seen in mirrors only by chance.
+
+use glam::{UVec2, Vec2};
+use rayon::prelude::*;
+
+use super::bidirectional::{
+    Connector, FIRST_LIGHT_VERTEX, Heuristic, PhotonGrid, Sink, Strategies, Subpath, Technique,
+    VERTEX_DIMENSIONS, Walker,
+};
+use super::tiled::{CAMERA_DIMENSIONS, SamplerKind};
+use super::{
+    BadSample, Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass,
+    RenderStats,
+};
+use crate::engine::film::pass_buffer::PassTile;
+use crate::engine::film::{Film, PassBuffer, SampleRadiance, SplatBuffer, SplatList};
+use crate::engine::math::Rgb;
+use crate::engine::path::ClassId;
+use crate::engine::sampling::{IndependentSampler, Sampler, SobolSampler, Stream};
+use crate::engine::scene::features::SceneFeatures;
+
+/// Registry entry.
+pub const ENTRY: Entry = Entry {
+    id: "bdpt",
+    label: "Bidirectional path tracing",
+    summary: "Unbiased; the choice for light that comes around corners, from hidden or enclosed \
+              lamps, and for caustics. Slower than path tracing in open, softly lit scenes.",
+    params: PARAMS,
+    missing,
+    build,
+};
+
+const PARAMS: &[ParamSpec] = &[
+    ParamSpec {
+        name: "strategies",
+        kind: ParamKind::Strategies,
+        default: "all",
+        unit: "",
+        doc: "Which strategies (s, t) are on, s vertices sampled from the light and t from the \
+              lens: all, all-0,2-*,1 (all but these), or 1,2+0,2 (these alone).",
+    },
+    ParamSpec {
+        name: "heuristic",
+        kind: ParamKind::Choice(&["power", "balance"]),
+        default: "power",
+        unit: "",
+        doc: "How strategies share a path: in proportion to the squares of their densities, or to \
+              the densities.",
+    },
+    super::SAMPLER_PARAM,
+    ParamSpec {
+        name: "roulette",
+        kind: ParamKind::Integer(0, 10_000_000),
+        default: "2",
+        unit: "events",
+        doc: "Number of events after which Russian roulette may end either walk.",
+    },
+];
+
+/// Tiles of one chunk of work.
+const CHUNK: usize = 16;
+/// Chunks whose splats are held at the same time.
+const ROUND: usize = 128;
+
+fn build(params: &Params) -> Box<dyn Integrator> {
+    Box::new(Bdpt::new(params))
+}
+
+/// Words that no strategy can find: between S+ and S+ no two vertices can be connected.
+pub(super) fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
+    (features.zero_size_lights && features.specular).then_some(Missing {
+        words: "LS+((D|G|V)S+)*E".into(),
+        why: "light of a point, spot or directional source that meets mirror or glass before and \
+              after every diffuse or glossy surface passes no two neighbouring surfaces that a \
+              connection can join",
+    })
+}
+
+/// The estimator of one sample.
+pub(super) struct Bidirectional {
+    strategies: Strategies,
+    roulette: usize,
+}
+
+/// Memory of one sample, used again for the next.
+#[derive(Default)]
+pub(super) struct Workspace {
+    eye: Subpath,
+    light: Subpath,
+    densities: Vec<super::bidirectional::Density>,
+}
+
+impl Bidirectional {
+    pub(super) fn new(params: &Params) -> Self {
+        let heuristic = match params.choice("heuristic") {
+            "balance" => Heuristic::Balance,
+            _ => Heuristic::Power,
+        };
+        let strategies = params.strategies("strategies").with(heuristic);
+        let roulette = usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX);
+        Self::with(strategies, roulette)
+    }
+
+    /// Only the strategies that are on; walks may end by roulette after `roulette` events.
+    pub(super) fn with(strategies: Strategies, roulette: usize) -> Self {
+        Self {
+            strategies,
+            roulette,
+        }
+    }
+
+    /// Takes one sample at the film position `film`: two walks and all their connections, and
+    /// mergings with the photons of `grid`. The eye sampler stands behind film and lens.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what one sample needs and where it goes"
+    )]
+    pub(super) fn sample<S: Sampler>(
+        &self,
+        cx: &Pass<'_>,
+        (film, lens): (Vec2, Vec2),
+        samplers: (&mut S, &mut S),
+        grid: Option<&PhotonGrid>,
+        work: &mut Workspace,
+        sink: &mut impl Sink,
+        stats: &mut RenderStats,
+    ) {
+        let walker = Walker {
+            cx,
+            roulette: self.roulette,
+        };
+        let (eye_sampler, light_sampler) = samplers;
+        let (eye, light) = (&mut work.eye, &mut work.light);
+        let ray = cx.camera.generate_ray(film, lens);
+        let escape = walker.from_lens(ray, CAMERA_DIMENSIONS, eye_sampler, eye, stats);
+        let start = if cx.plan.shadow_rays && self.strategies.walk_from_lights() {
+            walker.from_light(light_sampler, light, stats)
+        } else {
+            None
+        };
+        let mut connector = Connector {
+            cx,
+            strategies: &self.strategies,
+            sink,
+            stats,
+        };
+
+        // s = 0: light that the eye walk met by itself.
+        if let Some(escape) = escape {
+            connector.escape(eye, &escape, &mut work.densities);
+        }
+        for t in 2..=eye.len() {
+            connector.hit(eye, t);
+        }
+        if !cx.plan.shadow_rays {
+            return;
+        }
+
+        // s = 1: shadow rays.
+        for t in 2..=eye.len() {
+            let vertex = eye.vertex(t - 1);
+            if !vertex.bsdf.has_non_delta() {
+                continue;
+            }
+            eye_sampler.seek(CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * (t as u32 - 2) + 4);
+            let u = eye_sampler.next_2d();
+            let lights = &cx.scene.lights;
+            if let Some((id, pmf)) = lights.sample(eye_sampler.next_1d())
+                && let Some(sample) = lights.get(id).sample_li(vertex.si.p, u)
+            {
+                connector.shadow(eye, t, id, pmf, &sample);
+            }
+        }
+
+        // Merging.
+        if let Some(grid) = grid {
+            for t in 2..=eye.len() {
+                connector.merge(grid, eye, t);
+            }
+        }
+
+        // t = 1: the light path ends on the lens.
+        let Some(start) = start else { return };
+        let lens = eye.densities(1)[0];
+        for s in 1..=light.len() {
+            light_sampler.seek(lens_dimension(s));
+            let u = light_sampler.next_2d();
+            if s == 1 {
+                connector.join_light(light, &start, &lens, u);
+            } else {
+                connector.join_lens((light, &start), s, &lens, u);
+            }
+        }
+
+        // All others.
+        for t in 2..=eye.len() {
+            if !eye.vertex(t - 1).bsdf.has_non_delta() {
+                continue;
+            }
+            for s in 2..=light.len() {
+                connector.connect((light, &start), s, eye, t);
+            }
+        }
+    }
+}
+
+/// Where the light sampler keeps the point of the lens for the vertex s − 1 of a light walk.
+pub(super) fn lens_dimension(s: usize) -> u32 {
+    match s {
+        1 => 6,
+        _ => FIRST_LIGHT_VERTEX + VERTEX_DIMENSIONS * (s as u32 - 2) + 4,
+    }
+}
+
+/// The integrator.
+pub(super) struct Bdpt {
+    estimator: Bidirectional,
+    sampler: SamplerKind,
+    /// Photons to merge with.
+    grid: Option<PhotonGrid>,
+    samples: Option<PassBuffer>,
+    splats: Option<SplatBuffer>,
+}
+
+/// Weighs and stores.
+struct Weighted<'a, 'b> {
+    out: &'a mut SampleRadiance<'b>,
+    splats: &'a mut SplatList,
+}
+
+impl Sink for Weighted<'_, '_> {
+    #[inline]
+    fn add(&mut self, _: Technique, class: ClassId, value: Rgb, weight: f32) {
+        self.out.add(class, value * weight);
+    }
+
+    #[inline]
+    fn splat(&mut self, film: Vec2, _: Technique, class: ClassId, value: Rgb, weight: f32) {
+        if weight != 0.0 {
+            self.splats.add(film, class, value * weight);
+        }
+    }
+}
+
+impl Bdpt {
+    pub(super) fn new(params: &Params) -> Self {
+        Self {
+            estimator: Bidirectional::new(params),
+            sampler: SamplerKind::of(params),
+            grid: None,
+            samples: None,
+            splats: None,
+        }
+    }
+
+    /// Merges with the photons of `grid` from now on.
+    pub(super) fn merge_with(&mut self, grid: PhotonGrid) {
+        self.estimator.strategies.merging = grid.merging();
+        self.grid = Some(grid);
+    }
+
+    /// The photons it merges with.
+    pub(super) fn photons(&self) -> Option<&PhotonGrid> {
+        self.grid.as_ref()
+    }
+
+    /// Takes the sample of `pixel` in the pass `cx`.
+    pub(super) fn sample_pixel(
+        &self,
+        cx: &Pass<'_>,
+        pixel: UVec2,
+        work: &mut Workspace,
+        sink: &mut impl Sink,
+        stats: &mut RenderStats,
+    ) {
+        // Even and odd passes are two scrambles, so that their difference measures the error.
+        let width = u64::from(cx.camera.size().x);
+        let item = (u64::from(pixel.y) * width + u64::from(pixel.x)) * 2 + cx.index % 2;
+        let index = (item, cx.index / 2);
+        match self.sampler {
+            SamplerKind::Independent => {
+                let new = |stream| IndependentSampler::new(cx.seed, stream, index);
+                let samplers = (new(Stream::Camera), new(Stream::Light));
+                self.sample_with(cx, pixel, samplers, work, sink, stats);
+            }
+            SamplerKind::Sobol => {
+                let new = |stream| SobolSampler::new(cx.seed, stream, index);
+                let samplers = (new(Stream::Camera), new(Stream::Light));
+                self.sample_with(cx, pixel, samplers, work, sink, stats);
+            }
+        }
+    }
+
+    fn sample_with<S: Sampler>(
+        &self,
+        cx: &Pass<'_>,
+        pixel: UVec2,
+        (mut eye, mut light): (S, S),
+        work: &mut Workspace,
+        sink: &mut impl Sink,
+        stats: &mut RenderStats,
+    ) {
+        let film = pixel.as_vec2() + eye.next_2d();
+        let lens = if cx.plan.lens {
+            eye.next_2d()
+        } else {
+            Vec2::ZERO
+        };
+        stats.samples += 1;
+        let samplers = (&mut eye, &mut light);
+        self.estimator.sample(
+            cx,
+            (film, lens),
+            samplers,
+            self.grid.as_ref(),
+            work,
+            sink,
+            stats,
+        );
+    }
+
+    fn render_chunk(
+        &self,
+        cx: &Pass<'_>,
+        first: usize,
+        tiles: &mut [PassTile],
+    ) -> Result<(SplatList, RenderStats), Cancelled> {
+        let mut stats = RenderStats::default();
+        let mut splats = SplatList::new(cx.camera.size());
+        let mut out = SampleRadiance::new(&cx.plan.classes, cx.plan.planned);
+        let mut work = Workspace::default();
+        let layout = crate::engine::film::tiles::Tiles::new(cx.camera.size());
+        for (i, tile) in tiles.iter_mut().enumerate() {
+            cx.cancel.check()?;
+            tile.begin();
+            for (place, pixel) in layout.pixels(first + i) {
+                out.clear();
+                let mut sink = Weighted {
+                    out: &mut out,
+                    splats: &mut splats,
+                };
+                self.sample_pixel(cx, pixel, &mut work, &mut sink, &mut stats);
+                if !tile.put(place, cx.plan.planned, &out) {
+                    stats.add_bad(BadSample {
+                        pixel,
+                        pass: cx.index,
+                    });
+                }
+            }
+        }
+        stats.non_finite += splats.non_finite;
+        Ok((splats, stats))
+    }
+}
+
+impl Integrator for Bdpt {
+    fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
+        let (size, planned) = (film.size(), cx.plan.planned);
+        let mut samples = match self.samples.take() {
+            Some(buffer) => buffer.refit(size, planned),
+            None => PassBuffer::new(size, planned),
+        };
+        let mut splats = match self.splats.take() {
+            Some(b) if b.fits(size, planned) => b,
+            _ => SplatBuffer::new(size, planned),
+        };
+        splats.clear();
+        let mut stats = RenderStats::default();
+        for (round, tiles) in samples.tiles_mut().chunks_mut(CHUNK * ROUND).enumerate() {
+            let chunks = tiles.par_chunks_mut(CHUNK).enumerate();
+            let done: Result<Vec<_>, Cancelled> = chunks
+                .map(|(i, tiles)| self.render_chunk(cx, (round * ROUND + i) * CHUNK, tiles))
+                .collect();
+            // In the order of the chunks: the same for any number of threads.
+            let (lists, counts): (Vec<_>, Vec<_>) = done?.into_iter().unzip();
+            splats.merge(&lists, &cx.plan.classes, 1.0);
+            counts.into_iter().for_each(|c| stats += c);
+        }
+        film.commit_splats(Some(&samples), &splats);
+        self.samples = Some(samples);
+        self.splats = Some(splats);
+        Ok(stats)
+    }
+}

@@ -1,0 +1,463 @@
+//! The strategies: what each adds, and with which weight.
+//!
+//! An end that is connected contributes no event probability. It is summed over its non-delta
+//! events, each with its own class and its own weight (CONTRACT rule 2).
+
+use glam::{Vec2, Vec3A};
+
+use super::ends::{LightEnd, area_density};
+use super::merge::PhotonGrid;
+use super::strategies::Strategies;
+use super::subpath::{Escape, LightStart, Subpath, Vertex};
+use super::weight::{Density, Join, Meeting, weight};
+use crate::engine::bsdf::Transport;
+use crate::engine::camera::CameraSample;
+use crate::engine::event::{Event, Letter};
+use crate::engine::geometry::{Ray, offset_origin};
+use crate::engine::integrators::{Pass, RenderStats};
+use crate::engine::light::LightSample;
+use crate::engine::math::Rgb;
+use crate::engine::path::ClassId;
+
+/// A strategy: number of vertices from the light and from the lens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Technique {
+    /// From the light.
+    pub s: usize,
+    /// From the lens.
+    pub t: usize,
+}
+
+/// Where contributions go: the unweighted one, and its weight.
+pub trait Sink {
+    /// A path that ends on the pixel whose sample is being taken.
+    fn add(&mut self, technique: Technique, class: ClassId, value: Rgb, weight: f32);
+    /// A path that ends at the film position `film`.
+    fn splat(&mut self, film: Vec2, technique: Technique, class: ClassId, value: Rgb, weight: f32);
+}
+
+/// Connects subpaths.
+pub struct Connector<'a, K> {
+    /// The pass.
+    pub cx: &'a Pass<'a>,
+    /// Which strategies are on.
+    pub strategies: &'a Strategies,
+    /// Where contributions go.
+    pub sink: &'a mut K,
+    /// Counts.
+    pub stats: &'a mut RenderStats,
+}
+
+/// An event evaluated at the end of a subpath.
+struct End {
+    class: ClassId,
+    diffuse: bool,
+    /// f·cosθ of the event.
+    f: Rgb,
+    /// Density toward the other subpath, 1/sr.
+    toward: f32,
+    /// Density back along its own, 1/sr.
+    back: f32,
+}
+
+impl End {
+    #[inline]
+    fn new(v: &Vertex, event: Event, class: ClassId, wi: Vec3A, transport: Transport) -> Self {
+        Self {
+            class,
+            diffuse: event == Event::Diffuse,
+            f: v.bsdf.eval(event, v.si.wo, wi, transport),
+            toward: v.bsdf.pdf(event, v.si.wo, wi),
+            back: v.bsdf.pdf(event, wi, v.si.wo),
+        }
+    }
+}
+
+impl<K: Sink> Connector<'_, K> {
+    /// Whether paths of the strategy (s, t) are wanted.
+    #[inline]
+    fn is_on(&self, s: usize, t: usize) -> bool {
+        let short = self
+            .cx
+            .plan
+            .max_depth
+            .is_none_or(|max| s + t <= max as usize + 2);
+        short && self.strategies.is_on(s, t)
+    }
+
+    /// Whether light gets through; `known` holds the answer once it is asked for.
+    #[inline]
+    fn visible(&mut self, known: &mut Option<f32>, ray: impl FnOnce() -> Ray) -> f32 {
+        *known.get_or_insert_with(|| {
+            self.stats.rays += 1;
+            self.cx.scene.transmittance_along(ray())
+        })
+    }
+
+    /// Density with which an event at vertex `i` of `path` draws the vertex before it, if its
+    /// density is `pdf_dir` in 1/sr: area density, or that of the light's end.
+    #[inline]
+    fn before(path: &Subpath, i: usize, pdf_dir: f32, start: Option<&LightEnd>) -> f32 {
+        let p = path.vertex(i).si.p;
+        match (i, start) {
+            (1, Some(end)) => end.arrive(pdf_dir, p),
+            (1, None) => 0.0, // the lens is never met
+            _ => area_density(pdf_dir, p, &path.vertex(i - 1).si),
+        }
+    }
+
+    /// s = 0: the last of the `t` vertices of the eye walk lies on a light.
+    pub fn hit(&mut self, eye: &Subpath, t: usize) {
+        let lights = &self.cx.scene.lights;
+        let v = eye.vertex(t - 1);
+        let Some(id) = v.si.light.filter(|_| self.is_on(0, t)) else {
+            return;
+        };
+        let light = lights.get(id);
+        let emitted = light.emitted(&v.si, v.si.wo);
+        if emitted.is_black() {
+            return;
+        }
+        let end = LightEnd::new(id, light, v.si.p, Some(v.si.n_g));
+        let (le, pmf) = (light.pdf_le(end.n, v.si.wo), lights.pmf(id));
+        let (mut departs, mut shadow_ratio) = (0.0, 1.0);
+        if t > 2 {
+            let before = &eye.vertex(t - 2).si;
+            departs = end.depart(le, v.si.wo, before);
+            let pdf_li = light.pdf_li(before.p, -v.si.wo, Some(&v.si));
+            shadow_ratio = end.shadow_ratio(pdf_li, le, before.p);
+        }
+        let join = Join {
+            diffuse: [false; 2],
+            meeting: Meeting::Connection,
+            light: &[],
+            eye: eye.densities(t),
+            light_other: [0.0; 2],
+            eye_other: [end.start(pmf, le), departs],
+            shadow_ratio,
+            zero_size: false,
+            infinite: false,
+        };
+        let weight = weight(&join, self.strategies);
+        self.sink.add(
+            Technique { s: 0, t },
+            v.class,
+            v.throughput * emitted,
+            weight,
+        );
+    }
+
+    /// s = 0: the eye walk left the scene; all environments are seen there.
+    pub fn escape(&mut self, eye: &Subpath, escape: &Escape, scratch: &mut Vec<Density>) {
+        let t = eye.len() + 1;
+        if !self.is_on(0, t) {
+            return;
+        }
+        let lights = &self.cx.scene.lights;
+        for &id in lights.environments() {
+            let light = lights.get(id);
+            let end = LightEnd::new(id, light, Vec3A::ZERO, None);
+            let (le, pmf) = (light.pdf_le(None, -escape.d), lights.pmf(id));
+            // The direction is the last vertex.
+            scratch.clear();
+            scratch.extend_from_slice(eye.densities(t - 1));
+            scratch.push(Density {
+                own: escape.pdf_dir,
+                other: 0.0,
+                connectible: true,
+                mergeable: false,
+            });
+            let departs = if t > 2 {
+                end.depart(le, escape.d, &eye.vertex(t - 2).si)
+            } else {
+                0.0
+            };
+            let join = Join {
+                diffuse: [false; 2],
+                meeting: Meeting::Connection,
+                light: &[],
+                eye: scratch,
+                light_other: [0.0; 2],
+                eye_other: [end.start(pmf, le), departs],
+                shadow_ratio: 1.0,
+                zero_size: false,
+                infinite: true,
+            };
+            let weight = weight(&join, self.strategies);
+            let value = escape.throughput * light.escaped(escape.d);
+            self.sink
+                .add(Technique { s: 0, t }, escape.class, value, weight);
+        }
+    }
+
+    /// s = 1: a shadow ray from the last of the `t` vertices of the eye walk to the point `sample`
+    /// of the light `id`, which was chosen with the probability `pmf`.
+    pub fn shadow(&mut self, eye: &Subpath, t: usize, id: u32, pmf: f32, sample: &LightSample) {
+        if !self.is_on(1, t) {
+            return;
+        }
+        let light = self.cx.scene.lights.get(id);
+        let v = eye.vertex(t - 1);
+        let (p, wi) = (v.si.p, sample.wi);
+        let q = if sample.distance.is_finite() {
+            p + wi * sample.distance
+        } else {
+            sample.target
+        };
+        let end = LightEnd::new(id, light, q, sample.n);
+        let le = light.pdf_le(sample.n, -wi);
+        let start = end.start(pmf, le);
+        let arrives = end.depart(le, -wi, &v.si);
+        let shadow_ratio = end.shadow_ratio(sample.pdf_dir, le, p);
+        let incident = v.throughput * sample.radiance * (1.0 / (pmf * sample.pdf_dir));
+        let mut visibility = None;
+        for event in v.bsdf.non_delta_events() {
+            let class = self.cx.plan.classes.prepend(event.letter(), v.class);
+            if !self.cx.plan.is_wanted(class) {
+                continue;
+            }
+            let z = End::new(v, event, class, wi, Transport::Radiance);
+            if z.f.is_black() {
+                continue;
+            }
+            let visible = self.visible(&mut visibility, || {
+                if sample.distance.is_finite() {
+                    v.si.spawn_ray_to(sample.target)
+                } else {
+                    v.si.spawn_ray(wi)
+                }
+            });
+            if visible == 0.0 {
+                return;
+            }
+            let join = Join {
+                diffuse: [false, event == Event::Diffuse],
+                meeting: Meeting::Connection,
+                light: &[Density {
+                    own: start,
+                    other: 0.0,
+                    connectible: true,
+                    mergeable: false,
+                }],
+                eye: eye.densities(t),
+                light_other: [end.arrive(z.toward, p), 0.0],
+                eye_other: [arrives, Self::before(eye, t - 1, z.back, None)],
+                shadow_ratio,
+                zero_size: sample.is_delta,
+                infinite: end.infinite,
+            };
+            let weight = weight(&join, self.strategies);
+            self.sink.add(
+                Technique { s: 1, t },
+                class,
+                incident * z.f * visible,
+                weight,
+            );
+        }
+    }
+
+    /// s ≥ 2, t ≥ 2: the last of `s` vertices of the light walk and the last of `t` of the eye walk
+    /// see each other.
+    pub fn connect(&mut self, from: (&Subpath, &LightStart), s: usize, eye: &Subpath, t: usize) {
+        if !self.is_on(s, t) {
+            return;
+        }
+        let (light, start) = from;
+        let (y, z) = (light.vertex(s - 1), eye.vertex(t - 1));
+        let to = y.si.p - z.si.p;
+        let distance2 = to.length_squared();
+        if distance2 == 0.0 {
+            return; // one point twice: its directions to itself have no measure
+        }
+        let wi = to / distance2.sqrt();
+        let throughput = z.throughput * y.throughput * (1.0 / distance2);
+        let plan = self.cx.plan;
+        let mut visibility = None;
+        for event in z.bsdf.non_delta_events() {
+            let suffix = plan.classes.prepend(event.letter(), z.class);
+            let eye_end = End::new(z, event, suffix, wi, Transport::Radiance);
+            if eye_end.f.is_black() {
+                continue;
+            }
+            for event in y.bsdf.non_delta_events() {
+                let prefix = plan.classes.append(y.class, event.letter());
+                let class = plan.classes.join(prefix, suffix);
+                if !plan.is_wanted(class) {
+                    continue;
+                }
+                let light_end = End::new(y, event, prefix, -wi, Transport::Importance);
+                if light_end.f.is_black() {
+                    continue;
+                }
+                let ray = || z.si.spawn_ray_to_surface(&y.si);
+                let visible = self.visible(&mut visibility, ray);
+                if visible == 0.0 {
+                    return;
+                }
+                let join = Join {
+                    diffuse: [light_end.diffuse, eye_end.diffuse],
+                    meeting: Meeting::Connection,
+                    light: light.densities(s),
+                    eye: eye.densities(t),
+                    light_other: [
+                        area_density(eye_end.toward, z.si.p, &y.si),
+                        Self::before(light, s - 1, light_end.back, Some(&start.end)),
+                    ],
+                    eye_other: [
+                        area_density(light_end.toward, y.si.p, &z.si),
+                        Self::before(eye, t - 1, eye_end.back, None),
+                    ],
+                    shadow_ratio: start.shadow_ratio,
+                    zero_size: start.end.zero_size,
+                    infinite: start.end.infinite,
+                };
+                let weight = weight(&join, self.strategies);
+                let value = throughput * eye_end.f * light_end.f * visible;
+                self.sink.add(Technique { s, t }, class, value, weight);
+            }
+        }
+    }
+
+    /// Merging: the last of the `t` vertices of the eye walk with the photons around it.
+    pub fn merge(&mut self, grid: &PhotonGrid, eye: &Subpath, t: usize) {
+        let v = eye.vertex(t - 1);
+        if !v.bsdf.has(Event::Diffuse) {
+            return;
+        }
+        let plan = self.cx.plan;
+        let suffix = plan.classes.prepend(Letter::D, v.class);
+        let scale = (1.0 / grid.merging()) as f32;
+        let densities = eye.densities(t);
+        let eye_before = if t > 2 { densities[t - 3].other } else { 0.0 };
+        grid.within(v.si.p, |photon| {
+            let s = photon.s as usize;
+            let class = plan.classes.join(photon.class, suffix);
+            let long = plan.max_depth.is_some_and(|max| s + t > max as usize + 3);
+            if long || !plan.is_wanted(class) {
+                return;
+            }
+            let end = End::new(v, Event::Diffuse, class, photon.wo, Transport::Radiance);
+            let cos = v.si.n_g.dot(photon.wo).abs();
+            if end.f.is_black() || cos == 0.0 {
+                return;
+            }
+            let (path, light) = grid.path(photon);
+            let previous = match (s, t) {
+                // Where the photon came from: its light, or the vertex before, whose cosine and
+                // distance are those of the densities that the light walk kept.
+                (2, _) => path.end.arrive(end.toward, v.si.p),
+                _ => end.toward * photon.back,
+            };
+            let ahead = if t > 2 {
+                area_density(end.back, v.si.p, &eye.vertex(t - 2).si)
+            } else {
+                0.0 // the lens is never met
+            };
+            let join = Join {
+                light,
+                eye: eye.densities(t - 1),
+                light_other: [densities[t - 1].own, previous],
+                eye_other: [ahead, eye_before],
+                shadow_ratio: path.shadow_ratio,
+                diffuse: [true, false],
+                meeting: Meeting::Merging,
+                zero_size: path.end.zero_size,
+                infinite: path.end.infinite,
+            };
+            let weight = weight(&join, self.strategies);
+            // Flux per area over the cosine is radiance times solid angle.
+            let value = v.throughput * photon.flux * end.f * (scale / cos);
+            self.sink.add(Technique { s, t }, class, value, weight);
+        });
+    }
+
+    /// t = 1, s ≥ 2: the last of `s` vertices of the light walk is joined to the lens by the random
+    /// point `u` on it.
+    pub fn join_lens(&mut self, from: (&Subpath, &LightStart), s: usize, lens: &Density, u: Vec2) {
+        if !self.is_on(s, 1) {
+            return;
+        }
+        let (light, start) = from;
+        let y = light.vertex(s - 1);
+        let Some(sample) = self.cx.camera.sample_wi(y.si.p, u) else {
+            return;
+        };
+        let importance = y.throughput * (sample.importance / sample.pdf_dir);
+        let seen = area_density(self.lens_pdf(&sample), sample.target, &y.si);
+        let mut visibility = None;
+        for event in y.bsdf.non_delta_events() {
+            let class = self.cx.plan.classes.append(y.class, event.letter());
+            if !self.cx.plan.is_wanted(class) {
+                continue;
+            }
+            let end = End::new(y, event, class, sample.wi, Transport::Importance);
+            if end.f.is_black() {
+                continue;
+            }
+            let visible = self.visible(&mut visibility, || y.si.spawn_ray_to(sample.target));
+            if visible == 0.0 {
+                return;
+            }
+            let join = Join {
+                diffuse: [event == Event::Diffuse, false],
+                meeting: Meeting::Connection,
+                light: light.densities(s),
+                eye: std::slice::from_ref(lens),
+                light_other: [seen, Self::before(light, s - 1, end.back, Some(&start.end))],
+                eye_other: [0.0; 2],
+                shadow_ratio: start.shadow_ratio,
+                zero_size: start.end.zero_size,
+                infinite: start.end.infinite,
+            };
+            let weight = weight(&join, self.strategies);
+            let value = importance * end.f * visible;
+            let technique = Technique { s, t: 1 };
+            self.sink
+                .splat(sample.film, technique, end.class, value, weight);
+        }
+    }
+
+    /// s = t = 1: the point where a light walk starts is joined to the lens.
+    pub fn join_light(&mut self, light: &Subpath, start: &LightStart, lens: &Density, u: Vec2) {
+        let (end, emission) = (&start.end, &start.emission);
+        let Some(n) = end.n.filter(|_| self.is_on(1, 1) && !end.infinite) else {
+            return;
+        };
+        let Some(sample) = self.cx.camera.sample_wi(end.p, u) else {
+            return;
+        };
+        let cos = n.dot(sample.wi);
+        if cos <= 0.0 || !self.cx.plan.is_wanted(ClassId::EMPTY) {
+            return;
+        }
+        let origin = offset_origin(emission.p, emission.p_error, n, sample.wi);
+        let visible = self.visible(&mut None, || Ray::between(origin, sample.target));
+        let flux = emission.radiance * (cos / (start.pmf * emission.pdf_pos));
+        let value = flux * (sample.importance / sample.pdf_dir) * visible;
+        if value.is_black() {
+            return;
+        }
+        let seen = self.lens_pdf(&sample) * (cos / sample.distance) / sample.distance;
+        let join = Join {
+            diffuse: [false; 2],
+            meeting: Meeting::Connection,
+            light: light.densities(1),
+            eye: std::slice::from_ref(lens),
+            light_other: [seen, 0.0],
+            eye_other: [0.0; 2],
+            shadow_ratio: 1.0,
+            zero_size: end.zero_size,
+            infinite: false,
+        };
+        let weight = weight(&join, self.strategies);
+        let technique = Technique { s: 1, t: 1 };
+        self.sink
+            .splat(sample.film, technique, ClassId::EMPTY, value, weight);
+    }
+
+    /// Density in 1/sr with which eye walks leave the lens in the direction against `sample`.
+    fn lens_pdf(&self, sample: &CameraSample) -> f32 {
+        let ray = Ray::new(sample.target, -sample.wi);
+        self.cx.camera.pdf_we(&ray).1
+    }
+}

@@ -1,0 +1,87 @@
+//! The light end v₀ of a path, and the densities between it and v₁.
+
+use glam::Vec3A;
+
+use crate::engine::geometry::SurfaceInteraction;
+use crate::engine::light::Light;
+
+/// Density in 1/m² of the point `si` if a walk at `from` draws the direction to it with the
+/// density `pdf_dir` in 1/sr.
+#[inline]
+pub fn area_density(pdf_dir: f32, from: Vec3A, si: &SurfaceInteraction) -> f32 {
+    let to = si.p - from;
+    let distance2 = to.length_squared();
+    pdf_dir * (si.n_g.dot(to).abs() / distance2.sqrt()) / distance2
+}
+
+/// The light end of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct LightEnd {
+    /// The light.
+    pub id: u32,
+    /// Where, if it is not at infinity.
+    pub p: Vec3A,
+    /// Normal of the emitting side, if it is a surface.
+    pub n: Option<Vec3A>,
+    /// It lies at infinity.
+    pub infinite: bool,
+    /// It has no size: no walk from the lens meets it.
+    pub zero_size: bool,
+}
+
+impl LightEnd {
+    /// The point `p` of `light`, number `id`; `n` is the normal there if it is a surface.
+    #[inline]
+    pub fn new(id: u32, light: &Light, p: Vec3A, n: Option<Vec3A>) -> Self {
+        Self {
+            id,
+            p,
+            n,
+            infinite: light.is_infinite(),
+            zero_size: light.is_delta(),
+        }
+    }
+
+    /// Density with which walks from lights start at this end, the choice of the light (`pmf`)
+    /// included: 1/m², at infinity 1/sr. `le` are the densities of [`Light::pdf_le`].
+    #[inline]
+    pub fn start(&self, pmf: f32, le: (f32, f32)) -> f32 {
+        pmf * if self.infinite { le.1 } else { le.0 }
+    }
+
+    /// Density in 1/m² with which a walk that started here goes on to v₁ = `si`.
+    #[inline]
+    pub fn depart(&self, le: (f32, f32), d: Vec3A, si: &SurfaceInteraction) -> f32 {
+        if self.infinite {
+            le.0 * si.n_g.dot(d).abs()
+        } else {
+            area_density(le.1, self.p, si)
+        }
+    }
+
+    /// Density of this end if a walk at v₁ = `from` draws the direction to it with the density
+    /// `pdf_dir` in 1/sr: 1/m², at infinity 1/sr; 0 where no walk can meet it.
+    #[inline]
+    pub fn arrive(&self, pdf_dir: f32, from: Vec3A) -> f32 {
+        if self.zero_size {
+            return 0.0;
+        }
+        let Some(n) = self.n.filter(|_| !self.infinite) else {
+            return pdf_dir;
+        };
+        let to = self.p - from;
+        let distance2 = to.length_squared();
+        pdf_dir * (n.dot(to).abs() / distance2.sqrt()) / distance2
+    }
+
+    /// Density of a shadow ray to this end, drawn with `pdf_li` in 1/sr at `from`, over that of
+    /// walks that start here; `pmf` is the same for both. They differ for surfaces alone.
+    #[inline]
+    pub fn shadow_ratio(&self, pdf_li: f32, le: (f32, f32), from: Vec3A) -> f32 {
+        if self.infinite || self.zero_size {
+            1.0
+        } else {
+            self.arrive(pdf_li, from) / le.0
+        }
+    }
+}

@@ -1,0 +1,389 @@
+//! The two walks. They keep what connections and weights need of every vertex.
+
+use glam::Vec3A;
+
+use super::ends::{LightEnd, area_density};
+use super::weight::Density;
+use crate::engine::bsdf::{Bsdf, BsdfSample, Transport};
+use crate::engine::event::Event;
+use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::integrators::{Pass, RenderStats};
+use crate::engine::light::EmissionSample;
+use crate::engine::math::Rgb;
+use crate::engine::path::ClassId;
+use crate::engine::sampling::Sampler;
+
+/// Dimensions reserved per vertex: direction 0–1, event 2, roulette 3, light or lens 4–5, choice of
+/// a light 6, opacity 7.
+pub const VERTEX_DIMENSIONS: u32 = 8;
+/// First dimension of the first vertex after a light: position 0–1, direction 2–3, choice 4, a
+/// point of the lens 6–7.
+pub const FIRST_LIGHT_VERTEX: u32 = 8;
+/// Most events of a walk; beyond, it is cut and counted.
+const MAX_EVENTS: usize = 10_000_000;
+/// Survival of walks that lost nothing: with 1 a walk between perfect mirrors would not end.
+const MAX_SURVIVAL: f32 = 0.98;
+
+/// A surface point of a subpath.
+#[derive(Clone, Debug)]
+pub struct Vertex {
+    /// Where; `wo` points back along the walk.
+    pub si: SurfaceInteraction,
+    /// Scattering there.
+    pub bsdf: Bsdf,
+    /// Product of f·cosθ/pdf over the events before, survival divided out: radiance from here
+    /// times this reaches the pixel, or the flux that arrives here from the light in W.
+    pub throughput: Rgb,
+    /// Class of the events between this vertex and the end the walk began at, its own excluded
+    /// (CONTRACT rule 4).
+    pub class: ClassId,
+    /// The event drawn there to go on. It restricts nothing that is evaluated there.
+    pub event: Option<Event>,
+}
+
+/// A subpath. Vertex 0, the lens or the light, has densities only.
+#[derive(Clone, Debug, Default)]
+pub struct Subpath {
+    vertices: Vec<Vertex>,
+    /// Of vertex 0 and of `vertices`.
+    densities: Vec<Density>,
+}
+
+/// How an eye walk left the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Escape {
+    /// Direction.
+    pub d: Vec3A,
+    /// Its density in 1/sr.
+    pub pdf_dir: f32,
+    /// As in [`Vertex`].
+    pub throughput: Rgb,
+    /// As in [`Vertex`].
+    pub class: ClassId,
+}
+
+/// Where a light walk starts.
+#[derive(Clone, Copy, Debug)]
+pub struct LightStart {
+    /// v₀.
+    pub end: LightEnd,
+    /// Probability of the choice of the light.
+    pub pmf: f32,
+    /// The first ray.
+    pub emission: EmissionSample,
+    /// Density of a shadow ray from v₁ to v₀ over that of this start; known with v₁.
+    pub shadow_ratio: f32,
+}
+
+impl Subpath {
+    fn restart(&mut self, own: f32) {
+        self.vertices.clear();
+        self.densities.clear();
+        self.densities.push(Density {
+            own,
+            other: 0.0,
+            connectible: true,
+            mergeable: false,
+        });
+    }
+
+    /// Number of vertices, the end included.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.densities.len()
+    }
+
+    /// Never true once a walk has begun: its end is the first vertex.
+    pub fn is_empty(&self) -> bool {
+        self.densities.is_empty()
+    }
+
+    /// Vertex `i`, from 1.
+    #[inline]
+    pub fn vertex(&self, i: usize) -> &Vertex {
+        &self.vertices[i - 1]
+    }
+
+    /// The densities of the first `n` vertices.
+    #[inline]
+    pub fn densities(&self, n: usize) -> &[Density] {
+        &self.densities[..n]
+    }
+}
+
+/// The end a walk began at.
+#[derive(Clone, Copy)]
+enum Origin {
+    Lens(Vec3A),
+    Light(LightEnd, (f32, f32)),
+}
+
+/// What travels between two vertices.
+struct Flight {
+    ray: Ray,
+    throughput: Rgb,
+    class: ClassId,
+    /// Density of the ray's direction, 1/sr.
+    pdf_dir: f32,
+    /// What the walk has kept of what it started with; roulette looks at it. For radiance the
+    /// squared index ratios are taken out: what returns to the eye's medium counts.
+    kept: Rgb,
+}
+
+/// Makes subpaths.
+pub struct Walker<'a> {
+    /// The pass.
+    pub cx: &'a Pass<'a>,
+    /// Number of events after which roulette may end a walk.
+    pub roulette: usize,
+}
+
+impl Walker<'_> {
+    /// A walk from the lens along `ray`, which began as the camera's film position and lens point
+    /// say. Returns how it left the scene, if it did.
+    pub fn from_lens<S: Sampler>(
+        &self,
+        ray: Ray,
+        first_dimension: u32,
+        sampler: &mut S,
+        path: &mut Subpath,
+        stats: &mut RenderStats,
+    ) -> Option<Escape> {
+        let (pdf_pos, pdf_dir) = self.cx.camera.pdf_we(&ray);
+        path.restart(pdf_pos);
+        let flight = Flight {
+            ray,
+            throughput: Rgb::WHITE,
+            class: ClassId::EMPTY,
+            pdf_dir,
+            kept: Rgb::WHITE,
+        };
+        let origin = Origin::Lens(ray.o);
+        let end = self.walk(origin, flight, first_dimension, sampler, path, stats)?;
+        Some(Escape {
+            d: end.ray.d,
+            pdf_dir: end.pdf_dir,
+            throughput: end.throughput,
+            class: end.class,
+        })
+    }
+
+    /// A walk from a light chosen by its power. None if the light has nothing to send.
+    pub fn from_light<S: Sampler>(
+        &self,
+        sampler: &mut S,
+        path: &mut Subpath,
+        stats: &mut RenderStats,
+    ) -> Option<LightStart> {
+        let lights = &self.cx.scene.lights;
+        sampler.seek(0);
+        let (u_pos, u_dir) = (sampler.next_2d(), sampler.next_2d());
+        let (id, pmf) = lights.sample(sampler.next_1d())?;
+        let light = lights.get(id);
+        let emission = light.sample_le(u_pos, u_dir)?;
+        let le = (emission.pdf_pos, emission.pdf_dir);
+        let end = LightEnd::new(id, light, emission.p, emission.n);
+        path.restart(end.start(pmf, le));
+        let flight = Flight {
+            ray: emission.ray,
+            throughput: emission.flux() / pmf,
+            class: ClassId::EMPTY,
+            pdf_dir: emission.pdf_dir,
+            kept: Rgb::WHITE,
+        };
+        let mut start = LightStart {
+            end,
+            pmf,
+            emission,
+            shadow_ratio: 1.0,
+        };
+        if !flight.throughput.is_black() {
+            let origin = Origin::Light(end, le);
+            self.walk(origin, flight, FIRST_LIGHT_VERTEX, sampler, path, stats);
+        }
+        if let Some(first) = path.vertices.first() {
+            let pdf_li = light.pdf_li(first.si.p, first.si.wo, self.point_of(&start).as_ref());
+            start.shadow_ratio = end.shadow_ratio(pdf_li, le, first.si.p);
+        }
+        Some(start)
+    }
+
+    /// v₀ as `Light::pdf_li` wants to see it.
+    fn point_of(&self, start: &LightStart) -> Option<SurfaceInteraction> {
+        let n = start.end.n?;
+        Some(SurfaceInteraction {
+            p: start.end.p,
+            p_error: start.emission.p_error,
+            n_g: n,
+            n_s: n,
+            uv: glam::Vec2::ZERO,
+            wo: start.emission.ray.d,
+            t: 0.0,
+            material: 0,
+            light: Some(start.end.id),
+            prim: 0,
+        })
+    }
+
+    /// Adds vertices to `path` until the walk ends; returns the flight that left the scene.
+    fn walk<S: Sampler>(
+        &self,
+        origin: Origin,
+        mut flight: Flight,
+        first_dimension: u32,
+        sampler: &mut S,
+        path: &mut Subpath,
+        stats: &mut RenderStats,
+    ) -> Option<Flight> {
+        let transport = match origin {
+            Origin::Lens(_) => Transport::Radiance,
+            Origin::Light(..) => Transport::Importance,
+        };
+        loop {
+            // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
+            let events = path.vertices.len();
+            let first = first_dimension + VERTEX_DIMENSIONS * events as u32;
+            sampler.seek(first);
+            let (direction, event, roulette) =
+                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
+
+            // The next surface, or the sky.
+            match transport {
+                Transport::Radiance => stats.ray_at(events as u32),
+                Transport::Importance => stats.rays += 1,
+            }
+            let opacity_number = || {
+                sampler.seek(first + 7);
+                sampler.next_1d()
+            };
+            let Some(si) = self.cx.scene.intersect(&flight.ray, opacity_number) else {
+                return Some(flight);
+            };
+            let own = match (path.vertices.last(), origin) {
+                (Some(last), _) => area_density(flight.pdf_dir, last.si.p, &si),
+                (None, Origin::Lens(p)) => area_density(flight.pdf_dir, p, &si),
+                (None, Origin::Light(end, le)) => end.depart(le, flight.ray.d, &si),
+            };
+            if own <= 0.0 {
+                return None; // seen exactly edge-on: nothing scatters there
+            }
+            path.densities.push(Density {
+                own,
+                other: 0.0,
+                connectible: true,
+                mergeable: false,
+            });
+            path.vertices.push(Vertex {
+                bsdf: self.cx.scene.bsdf(&si),
+                si,
+                throughput: flight.throughput,
+                class: flight.class,
+                event: None,
+            });
+            if self
+                .cx
+                .plan
+                .max_depth
+                .is_some_and(|max| events >= max as usize)
+            {
+                return None;
+            }
+            if events >= MAX_EVENTS {
+                stats.cut_paths += 1;
+                return None;
+            }
+
+            // One event, drawn by the roulette between the lobes.
+            let vertex = path.vertices.last()?;
+            if vertex.bsdf.is_empty() {
+                return None;
+            }
+            let Some(sample) = vertex.bsdf.sample(si.wo, event, direction, transport) else {
+                stats.below_horizon += u64::from(vertex.bsdf.has(Event::Glossy));
+                return None;
+            };
+            let backward = backward_pdf(vertex, &sample);
+            self.advance(&mut flight, &si, &sample, transport)?;
+            self.keep_densities(origin, &si, backward, &sample, path);
+
+            // Russian roulette: survival divides the throughput and enters no weight.
+            if events + 1 > self.roulette {
+                let survival = flight.kept.max_component().min(MAX_SURVIVAL);
+                if roulette >= survival {
+                    return None;
+                }
+                flight.throughput *= 1.0 / survival;
+                flight.kept *= 1.0 / survival;
+            } else if flight.throughput.is_black() {
+                return None;
+            }
+        }
+    }
+
+    /// Scatters the flight; None if no layer that is asked for has words of its new class.
+    fn advance(
+        &self,
+        flight: &mut Flight,
+        si: &SurfaceInteraction,
+        sample: &BsdfSample,
+        transport: Transport,
+    ) -> Option<()> {
+        let (plan, letter) = (self.cx.plan, sample.event.letter());
+        flight.throughput *= sample.weight;
+        flight.kept *= sample.weight;
+        flight.pdf_dir = sample.pdf_dir;
+        flight.ray = si.spawn_ray(sample.wi);
+        let pointless = match transport {
+            Transport::Radiance => {
+                flight.kept *= sample.eta * sample.eta;
+                flight.class = plan.classes.prepend(letter, flight.class);
+                plan.is_pointless(flight.class)
+            }
+            Transport::Importance => {
+                flight.class = plan.classes.append(flight.class, letter);
+                plan.is_pointless_from_light(flight.class)
+            }
+        };
+        (!pointless).then_some(())
+    }
+
+    /// Keeps what the event at the last vertex decides: whether connections may end there, and the
+    /// density with which the other walk would draw the vertex before it.
+    fn keep_densities(
+        &self,
+        origin: Origin,
+        si: &SurfaceInteraction,
+        backward: f32,
+        sample: &BsdfSample,
+        path: &mut Subpath,
+    ) {
+        let last = path.vertices.len();
+        path.vertices[last - 1].event = Some(sample.event);
+        path.densities[last].connectible = !sample.event.is_delta();
+        path.densities[last].mergeable = sample.event == Event::Diffuse;
+        path.densities[last - 1].other = match origin {
+            _ if last >= 2 => area_density(backward, si.p, &path.vertices[last - 2].si),
+            Origin::Light(end, _) => end.arrive(backward, si.p),
+            Origin::Lens(_) => 0.0,
+        };
+    }
+}
+
+/// P(event) · p_event in 1/sr of the way back: from the sampled direction to the one that was known.
+///
+/// A delta event carries the same delta either way, which cancels between strategies, but its
+/// probability does not, nor the Jacobian |dω_wi / dω_wo| where refraction narrows or widens a
+/// bundle of directions: n² cosθ dω is what it keeps (Veach 1997, section 5.2). It is the ratio of
+/// the densities of a rough dielectric as its roughness vanishes.
+fn backward_pdf(vertex: &Vertex, sample: &BsdfSample) -> f32 {
+    let (wo, wi) = (vertex.si.wo, sample.wi);
+    if !sample.event.is_delta() {
+        return vertex.bsdf.pdf(sample.event, wi, wo);
+    }
+    let probability = vertex.bsdf.event_probability(sample.event, wi);
+    if sample.eta == 1.0 {
+        return probability;
+    }
+    let (cos_o, cos_i) = (vertex.si.n_s.dot(wo).abs(), vertex.si.n_s.dot(wi).abs());
+    probability * (cos_o / cos_i) / (sample.eta * sample.eta)
+}

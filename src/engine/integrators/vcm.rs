@@ -1,0 +1,197 @@
+//! Vertex connection and merging (Georgiev, Křivánek, Davidovič and Slusallek 2012; Hachisuka,
+//! Pantaleoni and Jensen 2012): bidirectional path tracing to which photon mapping is one more
+//! family of strategies, weighed against the others.
+//!
+//! Each pass stores the diffuse vertices of light paths, then connects and merges. Merging is
+//! biased by its radius, which shrinks from pass to pass so that bias and noise both vanish (Knaus
+//! and Zwicker 2011, *Progressive Photon Mapping: A Probabilistic Approach*). Memory is that of the
+//! light paths of one pass, of which there are at most `MAX_PATHS`.
+
+use rayon::prelude::*;
+
+use super::bdpt::Bdpt;
+use super::bidirectional::{PhotonGrid, PhotonList, Subpath, Walker};
+use super::tiled::SamplerKind;
+use super::{
+    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
+};
+use crate::engine::film::Film;
+use crate::engine::sampling::{IndependentSampler, SobolSampler, Stream};
+use crate::engine::scene::features::SceneFeatures;
+
+/// Registry entry.
+pub const ENTRY: Entry = Entry {
+    id: "vcm",
+    label: "Vertex connection and merging",
+    summary: "Bidirectional path tracing and photon mapping in one: the most robust here, for \
+              caustics seen in mirrors and through water too. Biased by a radius that shrinks.",
+    params: PARAMS,
+    missing,
+    build,
+};
+
+const PARAMS: &[ParamSpec] = &[
+    RADIUS_PARAM,
+    ALPHA_PARAM,
+    ParamSpec {
+        name: "heuristic",
+        kind: ParamKind::Choice(&["balance", "power"]),
+        default: "balance",
+        unit: "",
+        doc: "How strategies share a path: in proportion to their densities, or to the squares.",
+    },
+    ParamSpec {
+        name: "strategies",
+        kind: ParamKind::Strategies,
+        default: "all",
+        unit: "",
+        doc: "Which strategies of connection (s, t) are on, s vertices sampled from the light and \
+              t from the lens: all, all-0,2-*,1 (all but these), or 1,2+0,2 (these alone).",
+    },
+    super::SAMPLER_PARAM,
+    ParamSpec {
+        name: "roulette",
+        kind: ParamKind::Integer(0, 10_000_000),
+        default: "2",
+        unit: "events",
+        doc: "Number of events after which Russian roulette may end either walk.",
+    },
+];
+
+/// Radius of merging in the first pass.
+pub(super) const RADIUS_PARAM: ParamSpec = ParamSpec {
+    name: "radius",
+    kind: ParamKind::Number(0.000_001, 1.0),
+    default: "0.005",
+    unit: "of the scene's radius",
+    doc: "Radius of merging in the first pass.",
+};
+
+/// How fast it shrinks.
+pub(super) const ALPHA_PARAM: ParamSpec = ParamSpec {
+    name: "alpha",
+    kind: ParamKind::Number(0.01, 1.0),
+    default: "0.75",
+    unit: "",
+    doc: "How slowly the radius shrinks: after n passes its square is n^(alpha-1) of the first.",
+};
+
+/// Most light paths that one pass stores.
+pub(super) const MAX_PATHS: u64 = 1 << 18;
+/// Light paths of one chunk of work.
+const CHUNK: u64 = 1024;
+
+fn build(params: &Params) -> Box<dyn Integrator> {
+    Box::new(Vcm {
+        bdpt: Bdpt::new(params),
+        photons: PhotonSource::new(params),
+    })
+}
+
+fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
+    (features.zero_size_lights && features.specular).then(|| Missing {
+        words: "LS+((G|V)S+)*E".into(),
+        why: "light of a point, spot or directional source that meets mirror or glass before and \
+              after every glossy surface, and no diffuse one, can be neither connected nor merged",
+    })
+}
+
+/// Where the photons of each pass come from.
+pub(super) struct PhotonSource {
+    radius: f64,
+    alpha: f64,
+    roulette: usize,
+    sampler: SamplerKind,
+}
+
+impl PhotonSource {
+    pub(super) fn new(params: &Params) -> Self {
+        Self {
+            radius: params.number("radius"),
+            alpha: params.number("alpha"),
+            roulette: usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX),
+            sampler: SamplerKind::of(params),
+        }
+    }
+
+    /// Radius of merging in pass `index`: its square shrinks by (i + α) / (i + 1) in pass i (Knaus
+    /// and Zwicker 2011, equation 15), of which n^(α−1) is the asymptote.
+    fn radius(&self, cx: &Pass<'_>) -> f32 {
+        let (_, scene) = cx.scene.geometry.bounding_sphere();
+        let shrink = ((cx.index + 1) as f64).powf(0.5 * (self.alpha - 1.0));
+        (self.radius * f64::from(scene) * shrink) as f32
+    }
+
+    /// Traces the light paths of a pass, one for every pixel but no more than [`MAX_PATHS`].
+    pub(super) fn trace(&self, cx: &Pass<'_>) -> Result<(PhotonGrid, RenderStats), Cancelled> {
+        let size = cx.camera.size();
+        let paths = (u64::from(size.x) * u64::from(size.y)).clamp(1, MAX_PATHS);
+        let chunks = (0..paths.div_ceil(CHUNK)).into_par_iter();
+        let done: Result<Vec<_>, Cancelled> = chunks
+            .map(|c| {
+                cx.cancel.check()?;
+                Ok(self.trace_chunk(cx, paths, c * CHUNK..paths.min((c + 1) * CHUNK)))
+            })
+            .collect();
+        // In the order of the chunks: the same for any number of threads.
+        let (lists, counts): (Vec<_>, Vec<_>) = done?.into_iter().unzip();
+        let mut stats = RenderStats::default();
+        counts.into_iter().for_each(|c| stats += c);
+        let radius = self.radius(cx).max(f32::MIN_POSITIVE);
+        Ok((PhotonGrid::new(&lists, radius, paths), stats))
+    }
+
+    fn trace_chunk(
+        &self,
+        cx: &Pass<'_>,
+        per_pass: u64,
+        paths: std::ops::Range<u64>,
+    ) -> (PhotonList, RenderStats) {
+        let mut stats = RenderStats::default();
+        let (mut list, mut path) = (PhotonList::default(), Subpath::default());
+        let walker = Walker {
+            cx,
+            roulette: self.roulette,
+        };
+        for i in paths {
+            // Even and odd passes are two scrambles, so that their difference measures the error.
+            let index = (cx.index % 2, cx.index / 2 * per_pass + i);
+            let start = match self.sampler {
+                SamplerKind::Independent => {
+                    let mut sampler = IndependentSampler::new(cx.seed, Stream::Photon, index);
+                    walker.from_light(&mut sampler, &mut path, &mut stats)
+                }
+                SamplerKind::Sobol => {
+                    let mut sampler = SobolSampler::new(cx.seed, Stream::Photon, index);
+                    walker.from_light(&mut sampler, &mut path, &mut stats)
+                }
+            };
+            if let Some(start) = start {
+                list.store(&path, &start);
+            }
+        }
+        (list, stats)
+    }
+}
+
+struct Vcm {
+    bdpt: Bdpt,
+    photons: PhotonSource,
+}
+
+impl Integrator for Vcm {
+    fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
+        let (grid, mut stats) = self.photons.trace(cx)?;
+        self.bdpt.merge_with(grid);
+        stats += self.bdpt.render_pass(cx, film)?;
+        Ok(stats)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        self.bdpt
+            .photons()
+            .map(PhotonGrid::fact)
+            .into_iter()
+            .collect()
+    }
+}
