@@ -6,9 +6,17 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use lightscope::engine::film::Frame;
-use lightscope::engine::integrators::{Cancel, REGISTRY};
-use lightscope::engine::session::Renderer;
+use glam::UVec2;
+use lightscope::engine::camera::Camera;
+use lightscope::engine::film::{Film, Frame, SampleRadiance};
+use lightscope::engine::geometry::Ray;
+use lightscope::engine::integrators::tiled::{RayIntegrator, SamplerKind, Tiled};
+use lightscope::engine::integrators::{Cancel, Integrator, Pass, REGISTRY, RenderStats};
+use lightscope::engine::math::Rgb;
+use lightscope::engine::path::ClassId;
+use lightscope::engine::plan::RenderPlan;
+use lightscope::engine::sampling::Sampler;
+use lightscope::engine::session::{RenderClock, Renderer};
 use support::render::{job, load, reference_dir, render_with_threads};
 
 fn scene_path(name: &str) -> std::path::PathBuf {
@@ -71,4 +79,90 @@ fn seeds_give_independent_pictures() {
     let first = bits(&render_with_threads(&job, 1, 2));
     job.settings.seed = 1;
     assert_ne!(first, bits(&render_with_threads(&job, 1, 2)));
+}
+
+/// What a plan leaves out is zero: without a plan the picture has the same bits.
+#[test]
+fn a_plan_changes_no_bit() {
+    for name in ["cornell-diffuse", "cornell-glass", "point-light", "furnace"] {
+        let scene = load(&scene_path(name));
+        for mode in ["mis", "kajiya", "hits"] {
+            let job = job(&scene, "path", &[("mode", mode)]);
+            let lens = job.camera.has_lens();
+            let plan = RenderPlan::new(&scene, lens, &job.settings.layers).expect("classes");
+            let full = plan.clone().with_everything_on();
+            assert!(plan.left_out.len() > full.left_out.len());
+            let [planned, full] = [plan, full].map(|plan| {
+                let mut renderer = Renderer::with_plan(&job, plan, RenderClock::start());
+                for _ in 0..4 {
+                    renderer
+                        .render_pass(&Cancel::never())
+                        .expect("nobody cancels");
+                }
+                renderer.frame()
+            });
+            assert!(bits(&planned) == bits(&full), "{name} {mode}");
+        }
+    }
+}
+
+/// One, but not a number in about one sample of ten and infinite in another.
+struct Faulty;
+
+impl RayIntegrator for Faulty {
+    fn radiance<S: Sampler>(
+        &self,
+        _: &Pass<'_>,
+        _: Ray,
+        sampler: &mut S,
+        out: &mut SampleRadiance<'_>,
+        _: &mut RenderStats,
+    ) {
+        let value = match sampler.next_1d() {
+            u if u < 0.1 => f32::NAN,
+            u if u < 0.2 => f32::INFINITY,
+            _ => 1.0,
+        };
+        out.add(ClassId::EMPTY, Rgb::splat(value));
+    }
+}
+
+#[test]
+fn samples_that_are_not_finite_are_counted_and_can_be_computed_again() {
+    let scene = load(&scene_path("cornell-diffuse"));
+    let size = UVec2::new(19, 11);
+    let mut settings = job(&scene, "path", &[]).settings.layers;
+    settings.components = false;
+    let plan = RenderPlan::new(&scene, false, &settings).expect("classes");
+    let camera = Camera::new(&scene.camera).expect("a view").with_size(size);
+    let cancel = Cancel::never();
+    let pass = |index| Pass {
+        scene: &scene,
+        camera: &camera,
+        plan: &plan,
+        seed: 3,
+        index,
+        cancel: &cancel,
+    };
+    let mut tiled = Tiled::new(Faulty, SamplerKind::Independent);
+    let mut film = Film::new(size, plan.planned);
+    let mut stats = RenderStats::default();
+    for index in 0..64 {
+        stats += tiled
+            .render_pass(&pass(index), &mut film)
+            .expect("nobody cancels");
+    }
+
+    // A fifth is counted and left out; the mean of the others is exact.
+    let share = stats.non_finite as f64 / stats.samples as f64;
+    assert!((share - 0.2).abs() < 0.02, "{share}");
+    let mut layers = Vec::new();
+    film.resolve(&plan.labels, &mut layers);
+    assert!(layers[0].pixels.iter().all(|p| *p == [1.0; 3]));
+
+    // The first of them is found again from its pixel and pass alone.
+    let bad = stats.first_non_finite.expect("there are some");
+    let mut out = SampleRadiance::new(&plan.classes, plan.planned);
+    tiled.sample(&pass(bad.pass), bad.pixel, &mut out, &mut stats);
+    assert!(!out.is_finite());
 }

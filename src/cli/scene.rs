@@ -10,10 +10,10 @@ use super::list::Row;
 use super::suggest::did_you_mean;
 use crate::engine::camera::Camera;
 use crate::engine::integrators::{self, Entry, Params, REGISTRY};
-use crate::engine::io::scene_file;
+use crate::engine::io::{embedded, scene_file};
 use crate::engine::plan::RenderPlan;
 use crate::engine::scene::desc::CameraDesc;
-use crate::engine::scene::{Scene, SceneDesc, embedded};
+use crate::engine::scene::{Scene, SceneDesc};
 use crate::engine::session::RenderJob;
 
 /// The scene that is shown where none is named.

@@ -6,8 +6,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::state::hash;
-use crate::engine::io::{Disk, FileSource, scene_file};
-use crate::engine::scene::{SceneDesc, embedded};
+use crate::engine::io::{Disk, FileSource, embedded, scene_file};
+use crate::engine::scene::SceneDesc;
 
 /// An embedded scene or a file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,7 +10,8 @@ use super::exposure::auto_exposure;
 use super::model::Model;
 use super::source::SceneSource;
 use crate::engine::integrators::Cancel;
-use crate::engine::scene::{Scene, embedded};
+use crate::engine::io::embedded;
+use crate::engine::scene::Scene;
 use crate::engine::session::{RenderJob, Renderer};
 
 /// Pixels of a thumbnail.

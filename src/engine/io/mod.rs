@@ -5,8 +5,10 @@
 
 pub mod atomic;
 mod camera;
+pub mod embedded;
 pub mod error;
 mod fields;
+mod generated;
 pub mod image;
 mod json;
 mod lights;

@@ -3,7 +3,7 @@
 
 pub mod build;
 pub mod desc;
-pub mod embedded;
+
 pub mod features;
 pub mod material;
 mod prepared;

@@ -5,7 +5,7 @@ use egui::{
     Window,
 };
 
-use crate::engine::scene::embedded;
+use crate::engine::io::embedded;
 use crate::viewer::source::SceneSource;
 use crate::viewer::thumbnails::SIZE;
 use crate::viewer::workspace::{Request, Workspace};

@@ -3,7 +3,7 @@
 use egui::{ComboBox, RichText, Ui};
 
 use super::widgets;
-use crate::engine::scene::embedded;
+use crate::engine::io::embedded;
 use crate::viewer::commands::Command;
 use crate::viewer::source::SceneSource;
 use crate::viewer::workspace::{Request, Workspace};

@@ -18,7 +18,8 @@ const MAX_EVENTS: u32 = 10_000_000;
 /// Dimensions reserved per vertex: four for the walk, four for the shadow ray.
 const VERTEX_DIMENSIONS: u32 = 8;
 /// Survival of paths that lost nothing: with 1 a walk between perfect mirrors would not end.
-const MAX_SURVIVAL: f32 = 0.98;
+/// In a closed room of albedo ρ the variance is finite while ρ² is below it: up to ρ = 0.99995.
+const MAX_SURVIVAL: f32 = 0.9999;
 
 /// The state of a walk between two vertices.
 pub(super) struct Walk {
@@ -59,9 +60,6 @@ impl RayIntegrator for PathTracer {
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let first = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * walk.depth;
-            sampler.seek(first);
-            let (direction, event, roulette) =
-                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
 
             // The next surface, or the sky.
             stats.rays += 1;
@@ -91,6 +89,9 @@ impl RayIntegrator for PathTracer {
             }
 
             // One event, drawn by the roulette between the lobes.
+            sampler.seek(first);
+            let (direction, event, roulette) =
+                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
             let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Radiance) else {
                 stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
                 return;
