@@ -1,7 +1,7 @@
 //! Writing what was rendered.
 
-use image::codecs::hdr::HdrEncoder;
 use image::Rgb;
+use image::codecs::hdr::HdrEncoder;
 
 use super::output::{Format, Output};
 use crate::cli::error::CliError;
