@@ -106,6 +106,7 @@ pub fn read(path: &Path) -> Result<Picture, Error> {
 }
 
 /// The text `name` of a file, if it is an OpenEXR file that has one.
+#[cfg(feature = "viewer")]
 pub fn read_text(path: &Path, name: &str) -> Option<String> {
     let meta = exr::meta::MetaData::read_from_file(path, false).ok()?;
     let header = meta.headers.first()?;

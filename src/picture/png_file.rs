@@ -1,9 +1,7 @@
 //! PNG files with texts, which the `image` crate does not write.
 
-use std::io::{BufRead, Seek};
-
 use glam::UVec2;
-use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
 
 /// The bytes of a file of 8-bit sRGB pixels.
 ///
@@ -29,13 +27,14 @@ pub fn encode(
 }
 
 /// The text `name` of a file, if it is a PNG that has one.
-pub fn read_text(file: impl BufRead + Seek, name: &str) -> Option<String> {
-    let reader = Decoder::new(file).read_info().ok()?;
+#[cfg(feature = "viewer")]
+pub fn read_text(file: impl std::io::BufRead + std::io::Seek, name: &str) -> Option<String> {
+    let reader = png::Decoder::new(file).read_info().ok()?;
     let texts = &reader.info().utf8_text;
     texts.iter().find(|t| t.keyword == name)?.get_text().ok()
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "viewer"))]
 mod tests {
     use super::*;
 

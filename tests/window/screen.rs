@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use image::RgbImage;
@@ -42,11 +43,18 @@ pub fn saved(folder: &Path, end: &str) -> PathBuf {
             .find(|p| p.to_string_lossy().ends_with(end))
     };
     assert!(
-        wait_until(20.0, || find().is_some()),
+        wait_until(PATIENCE, || find().is_some()),
         "no file *{end} is written"
     );
     find().expect("a file")
 }
+
+/// Seconds after which something that is waited for counts as missing: many, for machines that do
+/// other work beside the test.
+const PATIENCE: f64 = 90.0;
+
+/// One screen at a time: programs that render on all cores would starve each other.
+static ALONE: Mutex<()> = Mutex::new(());
 
 /// The part of the screen that the picture fills beside the panel, at the tests' window size.
 pub const WIDTH: u32 = 560;
@@ -56,6 +64,7 @@ pub const HEIGHT: u32 = 600;
 pub struct Screen {
     server: Child,
     display: String,
+    _alone: MutexGuard<'static, ()>,
 }
 
 impl Screen {
@@ -69,6 +78,7 @@ impl Screen {
                 return None;
             }
         }
+        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let mut server = Command::new("Xvfb")
             .args([
                 "-displayfd",
@@ -92,6 +102,7 @@ impl Screen {
             .expect("the number of the display");
         Some(Self {
             server,
+            _alone: alone,
             display: format!(":{}", line.trim()),
         })
     }
@@ -211,7 +222,7 @@ impl<'a> Program<'a> {
     pub fn settle(&self) -> RgbImage {
         let mut last = self.picture();
         let mut quiet = 0;
-        let settled = wait_until(40.0, || {
+        let settled = wait_until(PATIENCE, || {
             std::thread::sleep(Duration::from_millis(500));
             let now = self.picture();
             quiet = if difference(&last, &now) < 1.0 {
@@ -228,7 +239,7 @@ impl<'a> Program<'a> {
 
     /// Waits until the picture satisfies `condition`.
     pub fn wait_for(&self, what: &str, condition: impl Fn(&RgbImage) -> bool) {
-        let seen = wait_until(20.0, || condition(&self.picture()));
+        let seen = wait_until(PATIENCE, || condition(&self.picture()));
         if !seen {
             let path = std::env::temp_dir().join("lightscope-window.png");
             let _ = self.picture().save(&path);

@@ -1,9 +1,7 @@
 //! Writing what was rendered.
 
-use std::io::Cursor;
-
+use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
-use image::{ImageFormat, Rgb, RgbImage};
 
 use super::output::{Format, Output};
 use crate::cli::error::CliError;
@@ -12,7 +10,7 @@ use crate::cli::scene::parameter_text;
 use crate::engine::film::Frame;
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
 use crate::engine::io::atomic;
-use crate::picture::exr_file;
+use crate::picture::{exr_file, png_file};
 
 /// What a file says about its origin.
 pub struct Attributes(Vec<(String, String)>);
@@ -59,7 +57,7 @@ pub fn write(
     let Output { path, format } = &options.output;
     let bytes = match format {
         Format::Exr => exr(options, frame, attributes),
-        Format::Png => png(options, frame),
+        Format::Png => png(options, frame, attributes),
         Format::Hdr => hdr(frame),
     };
     let bytes = bytes.map_err(|error| CliError::failed(format!("{}: {error}", path.display())))?;
@@ -85,21 +83,16 @@ fn exr(options: &RenderOptions, frame: &Frame, attributes: &Attributes) -> Resul
     exr_file::encode(frame.size, &layers, &attributes.0).map_err(|error| error.to_string())
 }
 
-fn png(options: &RenderOptions, frame: &Frame) -> Result<Vec<u8>, String> {
-    let pixels = frame.layers[0].pixels.iter().flat_map(|rgb| {
+fn png(options: &RenderOptions, frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, String> {
+    let shown = |rgb: &[f32; 3]| {
         if rgb.iter().any(|x| x.is_nan()) {
             NAN_COLOR
         } else {
             tonemap(options.tonemap, options.exposure, *rgb)
         }
-    });
-    let image = RgbImage::from_raw(frame.size.x, frame.size.y, pixels.collect())
-        .ok_or("the frame is incomplete")?;
-    let mut bytes = Cursor::new(Vec::new());
-    image
-        .write_to(&mut bytes, ImageFormat::Png)
-        .map_err(|error| error.to_string())?;
-    Ok(bytes.into_inner())
+    };
+    let pixels: Vec<[u8; 3]> = frame.layers[0].pixels.iter().map(shown).collect();
+    png_file::encode(frame.size, &pixels, &attributes.0).map_err(|error| error.to_string())
 }
 
 /// The format knows no NaN: such pixels are black.
