@@ -70,7 +70,12 @@ pub fn whole_mean(frames: &[Frame]) -> f64 {
 /// Layers with blocks that hardly any sample meets: slivers of the floor, and the ring's own caustic
 /// seen in the ring, which both walks find by chance hits of the lamp alone. They are judged by the
 /// variance of the whole layer ([`Blocks::pool_variance`]), their image mean as any other.
-const RARE: [(&str, &str); 2] = [("caustic-ring", "specular"), ("caustic-ring", "caustic")];
+const RARE: [(&str, &str); 4] = [
+    ("caustic-ring", "specular"),
+    ("caustic-ring", "caustic"),
+    ("cornell-glossy", "caustic"),
+    ("furnace", "indirect"),
+];
 
 /// Fails unless the layers `layers` of sixteen runs agree with the reference.
 pub fn assert_agrees_with_reference(
