@@ -42,7 +42,11 @@ fn every_parameter_of_every_integrator_has_a_control() {
                 node.label()
                     .is_some_and(|label| label.eq_ignore_ascii_case(&name))
             });
-            assert!(found.next().is_some(), "{}: no control for {name}", entry.id);
+            assert!(
+                found.next().is_some(),
+                "{}: no control for {name}",
+                entry.id
+            );
         }
     }
 }
