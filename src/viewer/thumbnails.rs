@@ -17,7 +17,7 @@ use crate::engine::session::{RenderJob, Renderer};
 /// Pixels of a thumbnail.
 pub const SIZE: UVec2 = UVec2::new(160, 120);
 /// Samples a pixel.
-const PASSES: u32 = 24;
+const PASSES: u32 = 8;
 
 /// A thumbnail.
 #[derive(Debug)]

@@ -27,20 +27,23 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         .resizable(false)
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ui.ctx(), |ui| {
-            ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                egui::Grid::new("gallery")
-                    .spacing([10.0, 10.0])
-                    .show(ui, |ui| {
-                        for (i, scene) in embedded::all().iter().enumerate() {
-                            if card(ui, workspace, scene.id) {
-                                chosen = Some(scene.id);
+            ScrollArea::vertical()
+                .min_scrolled_height(height)
+                .max_height(height)
+                .show(ui, |ui| {
+                    egui::Grid::new("gallery")
+                        .spacing([10.0, 10.0])
+                        .show(ui, |ui| {
+                            for (i, scene) in embedded::all().iter().enumerate() {
+                                if card(ui, workspace, scene.id) {
+                                    chosen = Some(scene.id);
+                                }
+                                if i % COLUMNS == COLUMNS - 1 {
+                                    ui.end_row();
+                                }
                             }
-                            if i % COLUMNS == COLUMNS - 1 {
-                                ui.end_row();
-                            }
-                        }
-                    });
-            });
+                        });
+                });
         });
     if let Some(id) = chosen {
         let source = SceneSource::Embedded(id.to_owned());

@@ -35,17 +35,19 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             ui.label(RichText::new(format!("Note: {warning}")).weak());
         }
     }
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         widgets::command(ui, workspace, Command::Open);
         widgets::command(ui, workspace, Command::Gallery);
+        if workspace.model.source.path().is_some() {
+            widgets::command(ui, workspace, Command::Reload);
+        }
+    });
+    ui.horizontal(|ui| {
         let paused = workspace.paused;
         let label = if paused { "Go on" } else { "Pause" };
         widgets::command_labelled(ui, workspace, Command::Pause, label, true);
         let (undo, redo) = (workspace.history.can_undo(), workspace.history.can_redo());
         widgets::command_labelled(ui, workspace, Command::Undo, "Undo", undo);
         widgets::command_labelled(ui, workspace, Command::Redo, "Redo", redo);
-        if workspace.model.source.path().is_some() {
-            widgets::command(ui, workspace, Command::Reload);
-        }
     });
 }
