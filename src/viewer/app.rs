@@ -23,6 +23,9 @@ use super::thumbnails::{self, Thumbnail};
 use super::watch::Watch;
 use super::workspace::{Request, Workspace};
 
+/// Red, green, blue and opacity where no picture is yet.
+const BACKGROUND: [f32; 4] = [0.1, 0.1, 0.1, 1.0];
+
 /// What wakes the event loop from other threads.
 #[derive(Debug)]
 pub enum Wake {
@@ -224,7 +227,7 @@ impl App {
         shown.painter.paint_and_update_textures(
             egui::ViewportId::ROOT,
             output.pixels_per_point,
-            [0.0, 0.0, 0.0, 1.0],
+            BACKGROUND,
             &primitives,
             &mut output.textures_delta,
             capture,

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec2};
 
+use super::pipelines::Variant;
 use crate::engine::film::{Frame, ToneMap};
 use crate::viewer::display::{Display, Tile};
 
@@ -29,13 +30,11 @@ impl Default for Placement {
 pub(super) struct TileUniform {
     frame: [u32; 2],
     mask: u32,
-    curve: u32,
+    exposure: f32,
     offset: [f32; 2],
     scale: [f32; 2],
-    exposure: f32,
-    smooth_pixels: u32,
-    target_encodes: u32,
     surround: f32,
+    padding: [u32; 3],
 }
 
 /// A rectangle of the target in physical pixels.
@@ -99,7 +98,8 @@ const SURROUND: f32 = 0.012;
 /// Index of false colours in the shader.
 const FALSE_COLOR: u32 = 4;
 
-/// The numbers of a tile at `rect`; `slots` are the layers that were uploaded.
+/// The numbers of a tile at `rect` and the pipeline it needs; `slots` are the layers that were
+/// uploaded.
 pub(super) fn uniform(
     frame: &Frame,
     display: &Display,
@@ -107,7 +107,7 @@ pub(super) fn uniform(
     tile: &Tile,
     rect: PixelRect,
     slots: &[usize],
-) -> TileUniform {
+) -> (TileUniform, Variant) {
     let (corner, scale) = place(rect, frame.full_size, placement);
     // A coarse frame covers the same rectangle with fewer pixels.
     let coarse = frame.size.as_vec2() / frame.full_size.max(UVec2::ONE).as_vec2();
@@ -119,31 +119,25 @@ pub(super) fn uniform(
         .filter_map(bit)
         .fold(0, |m, i| m | 1 << i);
     let curve = ToneMap::ALL.iter().position(|m| *m == display.tonemap);
-    TileUniform {
+    let numbers = TileUniform {
         frame: frame.size.to_array(),
         mask,
+        exposure: tile.exposure.exp2(),
+        offset: (-corner * scale_xy).to_array(),
+        scale: scale_xy.to_array(),
+        surround: SURROUND,
+        padding: [0; 3],
+    };
+    let variant = Variant {
         curve: if display.false_color {
             FALSE_COLOR
         } else {
             curve.unwrap_or(0) as u32
         },
-        offset: (-corner * scale_xy).to_array(),
-        scale: scale_xy.to_array(),
-        exposure: tile.exposure.exp2(),
-        smooth_pixels: u32::from(frame.is_coarse() || scale < 1.0),
-        target_encodes: 0,
-        surround: SURROUND,
-    }
-}
-
-impl TileUniform {
-    /// For targets that encode by themselves.
-    pub(super) fn for_target(self, encodes: bool) -> Self {
-        Self {
-            target_encodes: u32::from(encodes),
-            ..self
-        }
-    }
+        smooth: frame.is_coarse() || scale < 1.0,
+        layers: slots.len() as u32,
+    };
+    (numbers, variant)
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! The picture on the graphics card: buffers, pipeline, shader. Panels are drawn by egui.
 
+mod canvas;
 mod layers;
 mod layout;
 pub mod painter;
 mod picture;
+mod pipelines;
 #[cfg(test)]
 mod tests;
 

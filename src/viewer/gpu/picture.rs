@@ -1,4 +1,5 @@
-//! Draws the picture below the panels, within egui's render pass.
+//! Draws the picture below the panels: into a canvas when it changed, and from there within
+//! egui's render pass.
 
 use std::sync::Arc;
 
@@ -6,10 +7,12 @@ use egui_wgpu::wgpu;
 use egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use glam::Vec2;
 
+use super::canvas::Canvas;
 use super::layers::{Layers, SLOTS};
 use super::layout::{PixelRect, Placement, TileUniform, uniform};
+use super::pipelines::Pipelines;
 use crate::engine::film::Frame;
-use crate::viewer::display::Display;
+use crate::viewer::display::{Display, Tile};
 
 /// Most tiles at once.
 const MAX_TILES: usize = 4;
@@ -30,14 +33,14 @@ pub struct PictureCallback {
 
 /// What stays on the graphics card between repaints.
 pub struct Resources {
-    pipeline: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    pipelines: Pipelines,
     uniforms: wgpu::Buffer,
     stride: u64,
-    encodes: bool,
     layers: Layers,
     bind_group: Option<wgpu::BindGroup>,
-    tiles: Vec<PixelRect>,
+    canvas: Canvas,
+    /// What the canvas shows: number of the frame, how, and where it lies.
+    drawn: Option<(u64, Display, Placement)>,
 }
 
 impl CallbackTrait for PictureCallback {
@@ -79,28 +82,27 @@ fn physical(rect: egui::Rect, pixels_per_point: f32) -> PixelRect {
 }
 
 impl Resources {
-    /// Pipeline and empty buffers for targets of `format`.
+    /// Empty buffers for targets of `format`.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let layout = bind_group_layout(device);
         let alignment = device.limits().min_uniform_buffer_offset_alignment;
         let stride = (size_of::<TileUniform>() as u64).next_multiple_of(u64::from(alignment));
         Self {
-            pipeline: pipeline(device, format, &layout),
+            pipelines: Pipelines::new(device, format),
             uniforms: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("tiles"),
                 size: stride * MAX_TILES as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            layout,
             stride,
-            encodes: format.is_srgb(),
             layers: Layers::new(),
             bind_group: None,
-            tiles: Vec::new(),
+            canvas: Canvas::new(device, format),
+            drawn: None,
         }
     }
 
+    /// Draws the canvas if anything about it has changed.
     pub(super) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -109,42 +111,73 @@ impl Resources {
         picture: &PictureCallback,
         area: PixelRect,
     ) {
+        let renewed = self.canvas.place(device, queue, area);
+        let wanted = (picture.number, picture.display, picture.placement);
+        if !renewed && self.drawn == Some(wanted) {
+            return;
+        }
+        self.drawn = Some(wanted);
         let tiles = picture.display.tiles();
-        let mut slots: Vec<usize> = tiles
-            .iter()
-            .flat_map(|t| t.layers.iter().copied())
-            .collect();
+        let mut slots: Vec<usize> = tiles.iter().flat_map(|t| t.layers.clone()).collect();
         slots.sort_unstable();
         slots.dedup();
         slots.truncate(SLOTS);
-        let frame = &picture.frame;
         // Without layers the sum is black; a buffer must be bound all the same.
         let uploaded = if slots.is_empty() { &[0][..] } else { &slots };
-        if self
+        let frame = &picture.frame;
+        let new = self
             .layers
-            .upload(device, encoder, picture.number, frame, uploaded)
-        {
-            self.bind_group = None;
-        }
-        self.tiles = tiles.iter().map(|tile| area.of_tile(tile)).collect();
-        for (i, (tile, rect)) in tiles.iter().zip(&self.tiles).enumerate() {
-            let numbers = uniform(
-                frame,
-                &picture.display,
-                picture.placement,
-                tile,
-                *rect,
-                &slots,
-            )
-            .for_target(self.encodes);
-            queue.write_buffer(
-                &self.uniforms,
-                self.stride * i as u64,
-                bytemuck::bytes_of(&numbers),
-            );
-        }
-        if self.bind_group.is_none() {
+            .upload(device, encoder, picture.number, frame, uploaded);
+        if new || self.bind_group.is_none() {
             self.bind_group = self.bind(device);
+        }
+        let area = PixelRect {
+            min: Vec2::ZERO,
+            ..area
+        };
+        self.draw(device, queue, encoder, picture, &tiles, area, &slots);
+    }
+
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "device, queue and encoder go together"
+    )]
+    fn draw(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        picture: &PictureCallback,
+        tiles: &[Tile],
+        area: PixelRect,
+        slots: &[usize],
+    ) {
+        let (Some(bind_group), Some(view)) = (&self.bind_group, self.canvas.view()) else {
+            return;
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+                depth_slice: None,
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        for (i, tile) in tiles.iter().enumerate() {
+            let rect = area.of_tile(tile);
+            if rect.size.min_element() < 1.0 {
+                continue;
+            }
+            let (display, placement) = (&picture.display, picture.placement);
+            let (numbers, variant) = uniform(&picture.frame, display, placement, tile, rect, slots);
+            let offset = self.stride * i as u64;
+            queue.write_buffer(&self.uniforms, offset, bytemuck::bytes_of(&numbers));
+            pass.set_pipeline(self.pipelines.get(device, variant));
+            pass.set_viewport(rect.min.x, rect.min.y, rect.size.x, rect.size.y, 0.0, 1.0);
+            pass.set_bind_group(0, bind_group, &[offset as u32]);
+            pass.draw(0..3, 0..1);
         }
     }
 
@@ -168,83 +201,12 @@ impl Resources {
         let entries: Vec<wgpu::BindGroupEntry<'_>> = std::iter::once(tile).chain(layers).collect();
         Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("picture"),
-            layout: &self.layout,
+            layout: &self.pipelines.layout,
             entries: &entries,
         }))
     }
 
     pub(super) fn paint(&self, pass: &mut wgpu::RenderPass<'_>, target: [u32; 2]) {
-        let Some(bind_group) = &self.bind_group else {
-            return;
-        };
-        pass.set_pipeline(&self.pipeline);
-        let target = Vec2::new(target[0] as f32, target[1] as f32);
-        for (i, tile) in self.tiles.iter().enumerate() {
-            let min = tile.min.clamp(Vec2::ZERO, target);
-            let size = (tile.min + tile.size).clamp(min, target) - min;
-            if size.min_element() < 1.0 {
-                continue;
-            }
-            pass.set_viewport(min.x, min.y, size.x, size.y, 0.0, 1.0);
-            pass.set_bind_group(0, bind_group, &[(self.stride * i as u64) as u32]);
-            pass.draw(0..3, 0..1);
-        }
+        self.canvas.paint(pass, target);
     }
-}
-
-fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let buffer = |binding: u32, ty: wgpu::BufferBindingType| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: binding == 0,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let mut entries = vec![buffer(0, wgpu::BufferBindingType::Uniform)];
-    entries.extend((1..=SLOTS as u32).map(|binding| buffer(binding, storage)));
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("picture"),
-        entries: &entries,
-    })
-}
-
-fn pipeline(
-    device: &wgpu::Device,
-    format: wgpu::TextureFormat,
-    layout: &wgpu::BindGroupLayout,
-) -> wgpu::RenderPipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("picture"),
-        source: wgpu::ShaderSource::Wgsl(include_str!("picture.wgsl").into()),
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("picture"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("picture"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(format.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

@@ -6,21 +6,24 @@ struct Tile {
     frame: vec2<u32>,
     // Bit i: layer i is part of the sum.
     mask: u32,
-    // Index into ToneMap::ALL, or 4 for false colours.
-    curve: u32,
+    // Factor on radiance.
+    exposure: f32,
     // Position on the layers, in their pixels, of the target's pixel position p:
     // offset + scale * p.
     offset: vec2<f32>,
     scale: vec2<f32>,
-    // Factor on radiance.
-    exposure: f32,
-    // 1: interpolate between pixels.
-    smooth_pixels: u32,
-    // 1: the target encodes by itself.
-    target_encodes: u32,
     // Linear grey around the picture.
     surround: f32,
 }
+
+// Index into ToneMap::ALL, or 4 for false colours.
+override curve: u32;
+// Interpolate between pixels.
+override smooth_pixels: bool;
+// Layers in the buffers.
+override layers: u32;
+// The target encodes by itself.
+override target_encodes: bool;
 
 @group(0) @binding(0) var<uniform> tile: Tile;
 // Bits of the numbers: NaN must be seen as such before any arithmetic touches it.
@@ -51,16 +54,16 @@ fn radiance(at: vec2<i32>) -> vec4<f32> {
     let inside = clamp(at, vec2<i32>(0), vec2<i32>(tile.frame) - 1);
     let i = 3u * (u32(inside.y) * tile.frame.x + u32(inside.x));
     var sum = vec4<f32>(0.0);
-    if (tile.mask & 1u) != 0u {
+    if layers > 0u && (tile.mask & 1u) != 0u {
         sum = add(sum, decode(vec3<u32>(layer0[i], layer0[i + 1u], layer0[i + 2u])));
     }
-    if (tile.mask & 2u) != 0u {
+    if layers > 1u && (tile.mask & 2u) != 0u {
         sum = add(sum, decode(vec3<u32>(layer1[i], layer1[i + 1u], layer1[i + 2u])));
     }
-    if (tile.mask & 4u) != 0u {
+    if layers > 2u && (tile.mask & 4u) != 0u {
         sum = add(sum, decode(vec3<u32>(layer2[i], layer2[i + 1u], layer2[i + 2u])));
     }
-    if (tile.mask & 8u) != 0u {
+    if layers > 3u && (tile.mask & 8u) != 0u {
         sum = add(sum, decode(vec3<u32>(layer3[i], layer3[i + 1u], layer3[i + 2u])));
     }
     return sum;
@@ -138,11 +141,11 @@ fn srgb_decode(x: vec3<f32>) -> vec3<f32> {
 
 // What the target shall show, from values that are sRGB-encoded already.
 fn encoded(rgb: vec3<f32>) -> vec4<f32> {
-    return vec4<f32>(select(rgb, srgb_decode(rgb), tile.target_encodes == 1u), 1.0);
+    return vec4<f32>(select(rgb, srgb_decode(rgb), target_encodes), 1.0);
 }
 
 fn linear(rgb: vec3<f32>) -> vec4<f32> {
-    return vec4<f32>(select(srgb_encode(rgb), rgb, tile.target_encodes == 1u), 1.0);
+    return vec4<f32>(select(srgb_encode(rgb), rgb, target_encodes), 1.0);
 }
 
 // Ten stops about the middle of the display's range.
@@ -158,7 +161,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         return linear(vec3<f32>(tile.surround));
     }
     var pixel: vec4<f32>;
-    if tile.smooth_pixels == 1u {
+    if smooth_pixels {
         pixel = interpolated(at);
     } else {
         pixel = radiance(vec2<i32>(floor(at)));
@@ -171,7 +174,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     // As in tonemap.rs: inputs are bounded so that squares stay finite.
     let rgb = min(max(pixel.xyz * tile.exposure, vec3<f32>(0.0)), vec3<f32>(1e9));
-    switch tile.curve {
+    switch curve {
         case 0u: { return linear(min(rgb, vec3<f32>(1.0))); }
         case 1u: { return linear(rgb / (1.0 + rgb)); }
         case 2u: { return linear(clamp(narkowicz(rgb), vec3<f32>(0.0), vec3<f32>(1.0))); }

@@ -19,7 +19,6 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
     hand::follow(ui, &response, workspace);
-    ui.painter().rect_filled(rect, 0.0, Color32::from_gray(26));
     if let Some(frame) = &workspace.frame {
         let callback = PictureCallback {
             frame: frame.clone(),
