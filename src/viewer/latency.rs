@@ -35,7 +35,17 @@ struct Bench {
     size: UVec2,
 }
 
-/// Milliseconds from each of `inputs` inputs to the answer drawn, and the name of the adapter.
+/// What was measured, in milliseconds from the moment each input was due.
+pub struct Latency {
+    /// Until the panels had answered: laid out and ready to be drawn.
+    pub answered: Vec<f64>,
+    /// Until the graphics device had drawn it.
+    pub drawn: Vec<f64>,
+    /// Name of the device.
+    pub adapter: String,
+}
+
+/// Measures `inputs` inputs.
 ///
 /// # Errors
 /// Without graphics driver.
@@ -44,19 +54,25 @@ pub fn measure(
     scene: Arc<Scene>,
     size: UVec2,
     inputs: usize,
-) -> Result<(Vec<f64>, String), ViewError> {
+) -> Result<Latency, ViewError> {
     let (mut bench, adapter) = Bench::new(source, scene, size)?;
-    let mut times = Vec::with_capacity(inputs);
+    let mut latency = Latency {
+        answered: Vec::with_capacity(inputs),
+        drawn: Vec::with_capacity(inputs),
+        adapter,
+    };
     let mut due = Instant::now();
     for i in 0..WARM_UP + inputs {
         due = due.max(Instant::now()) + PAUSE;
         std::thread::sleep(due.saturating_duration_since(Instant::now()));
-        bench.answer(input(i));
+        let answered = bench.answer(input(i));
         if i >= WARM_UP {
-            times.push(due.elapsed().as_secs_f64() * 1e3);
+            let since = |at: Instant| at.saturating_duration_since(due).as_secs_f64() * 1e3;
+            latency.answered.push(since(answered));
+            latency.drawn.push(since(Instant::now()));
         }
     }
-    Ok((times, adapter))
+    Ok(latency)
 }
 
 /// The mouse wanders over the panel; now and then a key changes what is shown.
@@ -123,8 +139,8 @@ impl Bench {
         Ok((bench, adapter))
     }
 
-    /// What the window does for an input, until the device is done.
-    fn answer(&mut self, events: Vec<egui::Event>) {
+    /// What the window does for an input, until the device is done; returns when the panels were.
+    fn answer(&mut self, events: Vec<egui::Event>) -> Instant {
         if let Some(frame) = self.rendering.new_frame() {
             self.workspace.show_frame(frame);
         }
@@ -139,6 +155,7 @@ impl Bench {
         let jobs = self
             .context
             .tessellate(output.shapes, output.pixels_per_point);
+        let answered = Instant::now();
         for (id, deltas) in &output.textures_delta.set {
             for delta in deltas {
                 self.renderer
@@ -152,6 +169,7 @@ impl Bench {
                 self.workspace.notices.set_error("view", sentence);
             }
         }
+        answered
     }
 
     fn draw(&mut self, jobs: &[egui::ClippedPrimitive], pixels_per_point: f32) {

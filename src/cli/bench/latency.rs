@@ -16,10 +16,11 @@ const LIMIT_MS: f64 = 50.0;
 #[derive(Serialize)]
 struct Figures {
     camera_to_picture: Times,
-    input_to_panel: Times,
+    input_to_answer: Times,
+    input_to_drawn: Times,
     adapter: String,
     limit_ms: f64,
-    panel_p99_within_limit: bool,
+    drawn_p99_within_limit: bool,
 }
 
 #[derive(Serialize)]
@@ -55,28 +56,30 @@ pub fn run(args: &FirstFrameArgs) -> Result<(), CliError> {
     let (scene, _) = scene::build(&scene::read(&args.scene)?, args.size)?;
     let source = SceneSource::named(&args.scene);
     let inputs = args.changes as usize;
-    let (times, adapter) = latency::measure(source, scene, args.size, inputs)
+    let measured = latency::measure(source, scene, args.size, inputs)
         .map_err(|error| CliError::failed(error.to_string()))?;
-    let panel = Times::of(times);
+    let drawn = Times::of(measured.drawn);
     let f = Figures {
-        panel_p99_within_limit: panel.p99_ms <= LIMIT_MS,
+        drawn_p99_within_limit: drawn.p99_ms <= LIMIT_MS,
         camera_to_picture: camera,
-        input_to_panel: panel,
-        adapter,
+        input_to_answer: Times::of(measured.answered),
+        input_to_drawn: drawn,
+        adapter: measured.adapter,
         limit_ms: LIMIT_MS,
     };
     if args.json {
         return print::json(&f);
     }
-    let verdict = if f.panel_p99_within_limit {
+    let verdict = if f.drawn_p99_within_limit {
         "met"
     } else {
         "missed"
     };
     print::line(&format!(
-        "{}\n{} (drawn by {}); limit {LIMIT_MS} ms for p99: {verdict}",
+        "{}\n{}\n{} ({}); limit {LIMIT_MS} ms for p99: {verdict}",
         f.camera_to_picture.line("camera to picture"),
-        f.input_to_panel.line("input to panel"),
+        f.input_to_answer.line("input to answer of the panels"),
+        f.input_to_drawn.line("input to answer drawn"),
         f.adapter
     ))
 }
