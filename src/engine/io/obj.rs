@@ -15,6 +15,7 @@ use super::mtl;
 use super::mtl_files::MtlFiles;
 use super::source::{FileSource, reason};
 use super::triangulate::triangulate;
+use crate::engine::geometry::MAX_COORDINATE;
 use crate::engine::math::Rgb;
 use crate::engine::scene::desc::{CameraDesc, LightDesc, MeshDesc, NamedMaterial, SceneDesc};
 
@@ -257,8 +258,9 @@ fn frame_all(meshes: &[MeshDesc]) -> CameraDesc {
             .flatten()
             .map(|i| m.positions[*i as usize])
     });
-    let finite = used.filter(|p| p.is_finite());
-    let (lo, hi) = finite.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(lo, hi), p| {
+    // What the geometry drops is not framed either.
+    let kept = used.filter(|p| p.abs().max_element() <= MAX_COORDINATE);
+    let (lo, hi) = kept.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(lo, hi), p| {
         (lo.min(p.into()), hi.max(p.into()))
     });
     if !(lo.is_finite() && hi.is_finite()) {
