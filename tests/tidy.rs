@@ -162,7 +162,7 @@ fn modules_use_only_what_stands_left_of_them() {
         &["geometry"],
         &["bsdf"],
         &["scene/desc", "scene/texture"],
-        &["light", "camera"],
+        &["light", "media", "camera"],
         &["scene"],
         &["path"],
         &["photon"],

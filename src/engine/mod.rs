@@ -1,7 +1,7 @@
 //! The renderer core. It knows nothing of windows, prints nothing and reads no files outside `io`.
 //!
 //! A module uses only what stands before it in this list:
-//! math < sampling < geometry < {bsdf, light, camera} < scene < path < photon < plan <
+//! math < sampling < geometry < {bsdf, light, media, camera} < scene < path < photon < plan <
 //! {film, integrators} < session < measure. `io` uses `scene::desc` only.
 
 pub mod bsdf;
@@ -14,6 +14,7 @@ pub mod io;
 pub mod light;
 pub mod math;
 pub mod measure;
+pub mod media;
 pub mod path;
 pub mod photon;
 pub mod plan;

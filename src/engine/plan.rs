@@ -72,7 +72,8 @@ impl RenderPlan {
         let asked = asked_mask(settings);
         let letters = letters_of(&features);
         let possible = classes.possible(&letters, settings.max_depth);
-        let lit = !scene.lights.is_empty();
+        let lamps = !scene.lights.is_empty();
+        let lit = lamps || features.shining_media;
         let planned = if lit { asked & possible } else { 0 };
         let mut plan = Self {
             features,
@@ -80,7 +81,7 @@ impl RenderPlan {
             planned,
             asked,
             whole: !settings.no_whole,
-            shadow_rays: lit && settings.max_depth != Some(0),
+            shadow_rays: lamps && settings.max_depth != Some(0),
             lens,
             max_depth: settings.max_depth,
             left_out: Vec::new(),
@@ -167,13 +168,15 @@ impl RenderPlan {
         if !f.environment {
             leave("the sky", "no light lies at infinity around the scene");
         }
-        if !f.zero_size_lights && !f.hittable_lights && lit {
+        if !f.zero_size_lights && !f.hittable_lights && !f.shining_media && lit {
             leave("hits of lights", "no light can be met");
         }
         if !self.lens {
             leave("lens samples", "the camera is a pinhole");
         }
-        leave("media", "no medium: rays are straight and lossless");
+        if !f.media {
+            leave("media", "no medium: rays are straight and lossless");
+        }
         if !self.whole {
             leave("the whole", "only layers were asked for");
         }
@@ -193,6 +196,7 @@ fn letters_of(features: &SceneFeatures) -> Vec<Letter> {
         (features.diffuse, Letter::D),
         (features.glossy, Letter::G),
         (features.specular, Letter::S),
+        (features.volume, Letter::V),
     ];
     present
         .into_iter()

@@ -118,6 +118,13 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
             f.cut_paths
         );
     }
+    if frame.stats.exceeded_majorants > 0 {
+        eprintln!(
+            "warning: {} times a medium was denser than the bound on it, so that it is rendered \
+             thinner than it is; raise majorant_scale",
+            frame.stats.exceeded_majorants
+        );
+    }
     if frame.stats.dark_starts > 0 {
         eprintln!(
             "warning: no independent sample found light, so that the Markov chains had nowhere to \

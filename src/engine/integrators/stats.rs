@@ -29,6 +29,9 @@ pub struct RenderStats {
     pub first_non_finite: Option<BadSample>,
     /// Paths that were cut at the largest number of events a path may have.
     pub cut_paths: u64,
+    /// Times that a medium was denser than the bound its tracking steps by: those parts of it are
+    /// rendered thinner than they are.
+    pub exceeded_majorants: u64,
     /// Microfacet samples below the horizon: no error, they carry no light.
     pub below_horizon: u64,
     /// Rays of walks from the eye by the number of events before them; the last counts all longer
@@ -77,6 +80,7 @@ impl AddAssign for RenderStats {
         self.non_finite += o.non_finite;
         self.first_non_finite = self.first_non_finite.or(o.first_non_finite);
         self.cut_paths += o.cut_paths;
+        self.exceeded_majorants += o.exceeded_majorants;
         self.below_horizon += o.below_horizon;
         for (sum, n) in self.levels.iter_mut().zip(o.levels) {
             *sum += n;

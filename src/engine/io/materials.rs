@@ -204,9 +204,6 @@ fn read_one(
         .take("opacity")
         .map(|n| colors.color(&f, n, "opacity", Limit::Share))
         .transpose()?;
-    for name in ["interior", "priority"] {
-        super::scene_file::refuse_media(&mut f, name)?;
-    }
     f.finish()?;
     Ok(NamedMaterial {
         name: key.name.clone(),

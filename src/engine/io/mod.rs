@@ -5,6 +5,7 @@
 
 pub mod atomic;
 mod camera;
+mod density;
 pub mod embedded;
 pub mod error;
 mod fields;
@@ -13,6 +14,7 @@ pub mod image;
 mod json;
 mod lights;
 mod materials;
+mod media;
 mod mtl;
 mod mtl_files;
 pub mod obj;

@@ -7,7 +7,7 @@ use super::fields::Fields;
 use super::materials::Colors;
 use super::source::{Disk, FileSource, reason};
 use super::value::{Node, SyntaxError, Value};
-use super::{camera, json, lights, materials, obj, shapes, toml};
+use super::{camera, json, lights, materials, media, obj, shapes, toml};
 use crate::engine::scene::desc::SceneDesc;
 
 /// Reads the scene in a file of the disk.
@@ -88,9 +88,10 @@ fn read(files: &dyn FileSource, file: &str, root: &Node) -> Result<SceneDesc, In
         .map_or_else(String::new, |d| d.0.to_owned());
     let right = "a table with position and target";
     scene.camera = camera::read(file, f.required("camera", right)?)?;
-    for name in ["medium", "media"] {
-        refuse_media(&mut f, name)?;
+    if let Some(node) = f.take("media") {
+        scene.media.media = media::read_all(file, node, files)?;
     }
+    let medium = f.take("medium");
     let mut colors = Colors::new(files);
     if let Some(node) = f.take("materials") {
         scene.materials = materials::read(file, node, &mut colors)?;
@@ -99,26 +100,15 @@ fn read(files: &dyn FileSource, file: &str, root: &Node) -> Result<SceneDesc, In
         shapes::read_mesh(file, node, files, &mut colors, &mut scene)?;
     }
     for node in f.list("spheres")? {
-        let sphere = shapes::read_sphere(file, node, &scene.materials)?;
-        scene.spheres.push(sphere);
+        shapes::read_sphere(file, node, &mut scene)?;
     }
     for node in f.list("lights")? {
         scene.lights.push(lights::read(file, node, &mut colors)?);
     }
     f.finish()?;
-    Ok(scene)
-}
-
-/// Participating media are known to the format but not to this version.
-pub(super) fn refuse_media(f: &mut Fields<'_>, name: &'static str) -> Result<(), InputError> {
-    match f.take(name) {
-        Some(node) => {
-            let message = format!(
-                "participating media (\"{name}\") cannot be rendered by this version; leave the \
-                 field out"
-            );
-            Err(f.error_at(node.line, &message))
-        }
-        None => Ok(()),
+    if let Some(node) = medium {
+        media::read_around(file, node, files, &mut scene)?;
     }
+    media::warn_of_unused(&mut scene);
+    Ok(scene)
 }

@@ -7,7 +7,9 @@ use super::fields::Fields;
 use super::materials::{Colors, Limit, find};
 use super::source::{FileSource, beside};
 use super::value::Node;
-use super::{obj, scene_file, transform};
+use super::media::{self, Interior};
+use super::{obj, transform};
+use crate::engine::scene::desc::media::SurfaceDesc;
 use crate::engine::scene::desc::{MeshDesc, NamedMaterial, SceneDesc, SphereDesc};
 
 /// Reads one entry of `meshes` into `scene`: one mesh, or as many as its file has materials.
@@ -29,12 +31,10 @@ pub fn read_mesh(
         .map(|n| colors.color(&f, n, "emission", Limit::Radiance))
         .transpose()?;
     let transform = transform::read(&mut f)?;
-    for name in ["interior", "priority"] {
-        scene_file::refuse_media(&mut f, name)?;
-    }
+    let interior = media::read_interior(&mut f, &scene.media.media)?;
     let what = f.what.clone();
     let material = material
-        .map(|(name, line)| find_material(&f, line, name, &scene.materials))
+        .map(|(name, line)| find_material(&f, line, name, interior.as_ref(), &mut scene.materials))
         .transpose()?;
     f.finish()?;
     let path = beside(file, mesh_file);
@@ -46,7 +46,12 @@ pub fn read_mesh(
             e
         }
     })?;
+    let first = scene.meshes.len();
     add_meshes(parsed, material, emission, transform, scene);
+    if let Some(interior) = interior {
+        let surface = SurfaceDesc::Meshes(first..scene.meshes.len());
+        scene.media.interiors.push(interior.of(surface));
+    }
     Ok(())
 }
 
@@ -80,18 +85,28 @@ fn find_material(
     f: &Fields<'_>,
     line: usize,
     name: &str,
-    materials: &[NamedMaterial],
+    interior: Option<&Interior>,
+    materials: &mut Vec<NamedMaterial>,
 ) -> Result<usize, InputError> {
+    if name == media::NO_MATERIAL && !materials.iter().any(|m| m.name == name) {
+        if interior.is_none() {
+            let message = "material \"none\" is that of a medium's invisible boundary; give an \
+                           interior, too";
+            return Err(f.error_at(line, message));
+        }
+        materials.push(media::boundary_material());
+        return Ok(materials.len() - 1);
+    }
     let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
     find(f, line, name, &names)
 }
 
-/// Reads one entry of `spheres`.
+/// Reads one entry of `spheres` into `scene`.
 pub fn read_sphere(
     file: &str,
     node: &Node,
-    materials: &[NamedMaterial],
-) -> Result<SphereDesc, InputError> {
+    scene: &mut SceneDesc,
+) -> Result<(), InputError> {
     let mut f = Fields::new(file, node, "sphere")?;
     let name = f.text("name")?.map_or_else(String::new, |n| n.0.to_owned());
     if !name.is_empty() {
@@ -100,7 +115,9 @@ pub fn read_sphere(
     let mut center = f.vector("center")?;
     let mut radius = f.number("radius", "a length above 0", |x| x > 0.0)?;
     let (material, line) = f.required_text("material", "the name of a material")?;
-    let material = find_material(&f, line, material, materials)?;
+    let interior = media::read_interior(&mut f, &scene.media.media)?;
+    let materials = &mut scene.materials;
+    let material = find_material(&f, line, material, interior.as_ref(), materials)?;
     let emission = f
         .take("emission")
         .map(|n| f.amounts(n, "emission"))
@@ -113,16 +130,18 @@ pub fn read_sphere(
         center = transform.transform_point3(center);
         radius *= scale;
     }
-    for name in ["interior", "priority"] {
-        scene_file::refuse_media(&mut f, name)?;
-    }
     f.finish()?;
-    Ok(SphereDesc {
+    if let Some(interior) = interior {
+        let surface = SurfaceDesc::Sphere(scene.spheres.len());
+        scene.media.interiors.push(interior.of(surface));
+    }
+    scene.spheres.push(SphereDesc {
         name,
         center,
         radius,
         material,
         emission,
         inward,
-    })
+    });
+    Ok(())
 }

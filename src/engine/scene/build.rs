@@ -8,6 +8,7 @@ use super::material::{Features, Material};
 use super::prepared::Scene;
 use crate::engine::geometry::{DropReport, Geometry, MeshInput, SphereInput};
 use crate::engine::light::{Emitter, Lights};
+use crate::engine::media::Media;
 
 impl Scene {
     /// Prepares a scene: builds materials, the acceleration structure and the lights.
@@ -33,11 +34,14 @@ impl Scene {
         let emitters = emitters(desc, &geometry)?;
         let lights = Lights::build(&desc.lights, &emitters, &geometry)?;
         geometry.set_lights(|prim| lights.of_primitive(prim));
+        let inward = |sphere: usize| desc.spheres[sphere].inward;
+        let at_infinity = lights.as_slice().iter().any(|l| l.is_infinite());
+        let media = Media::build(&desc.media, &geometry, inward, at_infinity)?;
 
         let mut warnings = desc.warnings.clone();
         warnings.extend(describe_dropped(&dropped));
-        let features = features(desc, &materials, &lights);
-        if !features.hittable_lights && !features.zero_size_lights {
+        let features = features(desc, &materials, &lights, &media);
+        if !features.hittable_lights && !features.zero_size_lights && !features.shining_media {
             warnings.push("nothing in this scene emits light, so the picture is black".to_owned());
         }
         Ok(Self {
@@ -48,6 +52,7 @@ impl Scene {
             materials,
             material_names: desc.materials.iter().map(|m| m.name.clone()).collect(),
             lights,
+            media,
             features,
             warnings,
         })
@@ -182,7 +187,12 @@ fn describe_dropped(dropped: &DropReport) -> Option<String> {
 }
 
 /// What the materials on surfaces and the lights can do; a material that nothing wears counts not.
-fn features(desc: &SceneDesc, materials: &[Material], lights: &Lights) -> SceneFeatures {
+fn features(
+    desc: &SceneDesc,
+    materials: &[Material],
+    lights: &Lights,
+    media: &Media,
+) -> SceneFeatures {
     let on_meshes = desc.meshes.iter().map(|m| m.material);
     let worn = on_meshes.chain(desc.spheres.iter().map(|s| s.material));
     let all = worn.fold(Features::NONE, |all, m| all.union(materials[m].features()));
@@ -195,5 +205,8 @@ fn features(desc: &SceneDesc, materials: &[Material], lights: &Lights) -> SceneF
         hittable_lights: lights.as_slice().iter().any(|l| !l.is_delta()),
         zero_size_lights: lights.as_slice().iter().any(|l| l.is_delta()),
         environment: !lights.environments().is_empty(),
+        media: !media.is_empty(),
+        volume: media.placed().any(|m| m.scatters()),
+        shining_media: media.placed().any(|m| !m.emission.is_black()),
     }
 }

@@ -3,11 +3,14 @@
 //! `io` produces it from TOML, JSON or OBJ; `build` turns it into a `Scene`. Lengths have no unit;
 //! colours are linear numbers per channel.
 
+pub mod media;
+
 use std::sync::Arc;
 
 use glam::{Affine3A, Quat, Vec3};
 
 use crate::engine::math::Rgb;
+pub use media::MediaDesc;
 
 /// Everything a scene file says.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +29,8 @@ pub struct SceneDesc {
     pub spheres: Vec<SphereDesc>,
     /// Lights that are not surfaces.
     pub lights: Vec<LightDesc>,
+    /// What is between the surfaces.
+    pub media: MediaDesc,
     /// Sentences for the user about what was assumed or dropped while reading.
     pub warnings: Vec<String>,
 }

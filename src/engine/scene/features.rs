@@ -19,4 +19,10 @@ pub struct SceneFeatures {
     pub zero_size_lights: bool,
     /// Some light lies at infinity and is seen where rays escape.
     pub environment: bool,
+    /// A medium fills some part of space.
+    pub media: bool,
+    /// Some medium scatters (V).
+    pub volume: bool,
+    /// Some medium shines.
+    pub shining_media: bool,
 }

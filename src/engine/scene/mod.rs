@@ -6,9 +6,11 @@ pub mod desc;
 
 pub mod features;
 pub mod material;
+pub mod passage;
 mod prepared;
 pub mod texture;
 
 pub use desc::SceneDesc;
 pub use features::SceneFeatures;
+pub use passage::{Arrival, Flight, Span, VolumePoint};
 pub use prepared::Scene;

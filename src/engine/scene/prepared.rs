@@ -6,6 +6,7 @@ use super::material::Material;
 use crate::engine::bsdf::Bsdf;
 use crate::engine::geometry::{Geometry, Ray, SurfaceInteraction};
 use crate::engine::light::{LightSample, Lights};
+use crate::engine::media::Media;
 
 /// Geometry, materials and lights in the form that is fast to query.
 pub struct Scene {
@@ -23,6 +24,8 @@ pub struct Scene {
     pub material_names: Vec<String>,
     /// Emitters.
     pub lights: Lights,
+    /// What is between the surfaces.
+    pub media: Media,
     /// What the scene holds.
     pub features: SceneFeatures,
     /// Sentences about what was assumed or dropped.
