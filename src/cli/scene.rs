@@ -140,7 +140,7 @@ mod tests {
         );
         assert_eq!(
             parameter_text(&params),
-            "mode=hits roulette=7 sampler=sobol"
+            "equiangular=on mode=hits roulette=7 sampler=sobol"
         );
         let message = |id: &str, set: &str| {
             parameters(id, &[set.to_owned()])

@@ -13,7 +13,10 @@ pub fn read(files: &dyn FileSource, path: &str) -> Result<DensityData, InputErro
         .read(path)
         .map_err(|e| InputError::in_file(path, reason(&e)))?;
     let Ok(text) = std::str::from_utf8(&bytes) else {
-        return Err(InputError::in_file(path, "it is no text; a density file is"));
+        return Err(InputError::in_file(
+            path,
+            "it is no text; a density file is",
+        ));
     };
     let mut lines = text.lines().enumerate().map(|(i, l)| (i + 1, l));
     let right = "the first line is to be `nx ny nz`, three whole numbers above 0";
@@ -25,7 +28,9 @@ pub fn read(files: &dyn FileSource, path: &str) -> Result<DensityData, InputErro
     let [nx, ny, nz] = sizes[..] else {
         return Err(InputError::at(path, 1, right));
     };
-    let product = [nx, ny, nz].iter().try_fold(1_u64, |p, n| p.checked_mul(*n));
+    let product = [nx, ny, nz]
+        .iter()
+        .try_fold(1_u64, |p, n| p.checked_mul(*n));
     let Some(count) = product.filter(|n| *n <= MAX_VOXELS) else {
         let message = format!("{nx} · {ny} · {nz} voxels are more than 2^30");
         return Err(InputError::at(path, 1, message));

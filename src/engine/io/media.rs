@@ -195,7 +195,11 @@ fn read_medium(f: &mut Fields<'_>, files: &dyn FileSource) -> Read<(MediumDesc, 
         }
         other => return Err(f.error_at(line, &unknown("type", other, &TYPES))),
     };
-    let albedo = amounts(f, "albedo", "the share of the extinction that is scattering")?;
+    let albedo = amounts(
+        f,
+        "albedo",
+        "the share of the extinction that is scattering",
+    )?;
     if let Some(x) = albedo.to_array().into_iter().find(|x| *x > 1.0) {
         let message = format!("albedo is at most 1, not {x}; more would make light out of nothing");
         return Err(f.error(&message));
@@ -227,9 +231,8 @@ fn read_region(f: &mut Fields<'_>) -> Read<Option<Region>> {
         if text == "everywhere" {
             return Ok(Some(Region::Everywhere));
         }
-        let message = format!(
-            "region is to be \"everywhere\" or a table with min and max, not \"{text}\""
-        );
+        let message =
+            format!("region is to be \"everywhere\" or a table with min and max, not \"{text}\"");
         return Err(f.error_at(node.line, &message));
     }
     let mut r = Fields::new(f.file(), node, format!("{}, region", f.what))?;
@@ -305,7 +308,10 @@ fn find(name: &str, media: &[NamedMedium]) -> Result<usize, String> {
 fn unknown(what: &str, word: &str, known: &[&str]) -> String {
     let hint = did_you_mean(word, known.iter().copied());
     if hint.is_empty() {
-        format!("there is no {what} \"{word}\"; there are {}", known.join(", "))
+        format!(
+            "there is no {what} \"{word}\"; there are {}",
+            known.join(", ")
+        )
     } else {
         format!("there is no {what} \"{word}\"{hint}")
     }

@@ -5,9 +5,9 @@ use glam::Affine3A;
 use super::error::InputError;
 use super::fields::Fields;
 use super::materials::{Colors, Limit, find};
+use super::media::{self, Interior};
 use super::source::{FileSource, beside};
 use super::value::Node;
-use super::media::{self, Interior};
 use super::{obj, transform};
 use crate::engine::scene::desc::media::SurfaceDesc;
 use crate::engine::scene::desc::{MeshDesc, NamedMaterial, SceneDesc, SphereDesc};
@@ -102,11 +102,7 @@ fn find_material(
 }
 
 /// Reads one entry of `spheres` into `scene`.
-pub fn read_sphere(
-    file: &str,
-    node: &Node,
-    scene: &mut SceneDesc,
-) -> Result<(), InputError> {
+pub fn read_sphere(file: &str, node: &Node, scene: &mut SceneDesc) -> Result<(), InputError> {
     let mut f = Fields::new(file, node, "sphere")?;
     let name = f.text("name")?.map_or_else(String::new, |n| n.0.to_owned());
     if !name.is_empty() {

@@ -104,6 +104,18 @@ impl EmissionSample {
 }
 
 impl Light {
+    /// A point in the middle of the light; None if it is at infinity.
+    pub fn center(&self) -> Option<Vec3A> {
+        match self {
+            Self::Triangle(light) => Some(light.center()),
+            Self::Quad(light) => Some(light.center()),
+            Self::Sphere(light) => Some(light.center()),
+            Self::Point(light) => Some(light.position),
+            Self::Spot(light) => Some(light.position()),
+            Self::Directional(_) | Self::Environment(_) => None,
+        }
+    }
+
     /// Samples the light as seen from `p`. `None` if nothing of it can be seen from there, the
     /// scene left aside.
     #[inline]

@@ -55,6 +55,11 @@ pub struct SpotLight {
 }
 
 impl SpotLight {
+    /// Where it is.
+    pub fn position(&self) -> Vec3A {
+        self.position
+    }
+
     /// A light along `direction` (any length but 0) within the half angle `angle_deg` in
     /// (0, 180], fading over the last `falloff_deg` of it. `None` for a direction of no length.
     pub fn new(

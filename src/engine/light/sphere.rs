@@ -38,6 +38,11 @@ struct Cone {
 }
 
 impl SphereLight {
+    /// Its centre.
+    pub fn center(&self) -> Vec3A {
+        self.center
+    }
+
     /// A light on the outer side, or the inner one. `None` unless radius and area are in the
     /// range of `f32`.
     pub fn new(center: Vec3A, radius: f32, inward: bool, radiance: Rgb) -> Option<Self> {

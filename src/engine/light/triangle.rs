@@ -28,6 +28,11 @@ pub struct TriangleLight {
 }
 
 impl TriangleLight {
+    /// Its centroid.
+    pub fn center(&self) -> Vec3A {
+        (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0
+    }
+
     /// A light on the side from which `corners` run counter-clockwise. `None` for a triangle
     /// whose area is 0 or beyond the range of `f32`.
     pub fn new(corners: [Vec3A; 3], radiance: Rgb) -> Option<Self> {
@@ -139,6 +144,11 @@ pub struct QuadLight {
 }
 
 impl QuadLight {
+    /// The middle of its halves' centroids.
+    pub fn center(&self) -> Vec3A {
+        0.5 * (self.halves[0].center() + self.halves[1].center())
+    }
+
     /// Joins two triangles if they share an edge, run the same way round, lie in one plane, and
     /// emit the same.
     pub fn new(first: &TriangleLight, second: &TriangleLight) -> Option<Self> {

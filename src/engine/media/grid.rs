@@ -44,7 +44,11 @@ impl Grid {
         let low = x.floor();
         let f = x - low;
         let (i, j, k) = (low.x as usize, low.y as usize, low.z as usize);
-        let (i1, j1, k1) = ((i + 1).min(nx - 1), (j + 1).min(ny - 1), (k + 1).min(nz - 1));
+        let (i1, j1, k1) = (
+            (i + 1).min(nx - 1),
+            (j + 1).min(ny - 1),
+            (k + 1).min(nz - 1),
+        );
         let row = |j: usize, k: usize| {
             let start = (k * ny + j) * nx;
             let (a, b) = (self.data.values[start + i], self.data.values[start + i1]);

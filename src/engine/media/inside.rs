@@ -75,7 +75,11 @@ impl Media {
         inward: impl Fn(usize) -> bool,
         light_at_infinity: bool,
     ) -> Result<Self, String> {
-        let media: Vec<Medium> = desc.media.iter().map(Medium::new).collect::<Result<_, _>>()?;
+        let media: Vec<Medium> = desc
+            .media
+            .iter()
+            .map(Medium::new)
+            .collect::<Result<_, _>>()?;
         let known = |i: Option<usize>| match i {
             Some(i) if i >= media.len() => Err(format!("there is no medium number {i}")),
             _ => Ok(i.map(|i| i as u16)),
@@ -220,7 +224,11 @@ impl Media {
             let si = geometry.interaction(&ray, &hit);
             if let Some(count) = leaves.get_mut(usize::from(self.by_prim[si.prim as usize])) {
                 let inward = self.regions[usize::from(self.by_prim[si.prim as usize])].inward;
-                *count += if (ray.d.dot(si.n_g) > 0.0) != inward { 1 } else { -1 };
+                *count += if (ray.d.dot(si.n_g) > 0.0) != inward {
+                    1
+                } else {
+                    -1
+                };
             }
             ray = si.spawn_ray(ray.d);
         }

@@ -45,8 +45,24 @@ impl Draws {
         }
     }
 
+    /// Numbers for something else, from the hash alone.
+    pub fn fork(&mut self) -> Self {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        Self {
+            first: [0.0; 2],
+            drawn: self.first.len(),
+            state: mix64(self.state ^ 0x5851_f42d_4c95_7f2d),
+            exceeded: 0,
+            rays: 0,
+        }
+    }
+
     /// The next number in [0, 1).
     #[inline]
+    #[expect(
+        clippy::should_implement_trait,
+        reason = "it never ends, so it is no iterator"
+    )]
     pub fn next(&mut self) -> f32 {
         self.drawn += 1;
         if let Some(u) = self.first.get(self.drawn - 1) {
@@ -185,13 +201,7 @@ impl Medium {
         }
     }
 
-    fn transmittance_of(
-        &self,
-        grid: &Grid,
-        ray: &Ray,
-        span: (f32, f32),
-        draws: &mut Draws,
-    ) -> Rgb {
+    fn transmittance_of(&self, grid: &Grid, ray: &Ray, span: (f32, f32), draws: &mut Draws) -> Rgb {
         let most = self.sigma_t.max_component();
         let mut transmittance = Rgb::WHITE;
         let mut depth = free_path(draws.next());
@@ -222,6 +232,13 @@ impl Medium {
         transmittance
     }
 
+    /// σ_s exp(−σ_t t): the share of light per length that is scattered at the distance `t` of a
+    /// span's begin, where the medium is homogeneous.
+    #[inline]
+    pub fn scattered_at(&self, t: f32) -> Rgb {
+        self.albedo * self.sigma_t * self.sigma_t.map(|sigma| through(sigma, t))
+    }
+
     /// Density in 1/m with which [`Medium::track`] scatters at the distance `t` after a span's
     /// begin, where the medium is homogeneous and the throughput `beta`.
     #[inline]
@@ -245,7 +262,11 @@ fn free_path(u: f32) -> f32 {
 /// exp(−σ t); 1 for σ = 0 at infinity, too.
 #[inline]
 fn through(sigma: f32, t: f32) -> f32 {
-    if sigma == 0.0 { 1.0 } else { (-sigma * t).exp() }
+    if sigma == 0.0 {
+        1.0
+    } else {
+        (-sigma * t).exp()
+    }
 }
 
 /// The channel that is tracked.

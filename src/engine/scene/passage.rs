@@ -142,7 +142,12 @@ impl Scene {
 
     /// The share of light that gets through media and surfaces along `ray`, up to its end, in the
     /// mean over `draws`.
-    pub fn transmittance_in_media(&self, mut ray: Ray, mut inside: Inside, draws: &mut Draws) -> Rgb {
+    pub fn transmittance_in_media(
+        &self,
+        mut ray: Ray,
+        mut inside: Inside,
+        draws: &mut Draws,
+    ) -> Rgb {
         let mut transmittance = Rgb::WHITE;
         for _ in 0..MAX_CROSSINGS {
             draws.rays += 1;

@@ -8,6 +8,8 @@
 //! of zero size `hits` finds nothing and the others miss `LS.*E`.
 
 mod direct;
+mod equiangular;
+mod volume;
 mod walk;
 
 pub(super) use direct::turned;
@@ -39,6 +41,14 @@ const PARAMS: &[ParamSpec] = &[
         unit: "events",
         doc: "Number of events after which Russian roulette may end a path.",
     },
+    ParamSpec {
+        name: "equiangular",
+        kind: ParamKind::Choice(&["on", "off"]),
+        default: "on",
+        unit: "",
+        doc: "In homogeneous media, one more place on each flight where light is looked for, near \
+              the light (Kulla and Fajardo 2012).",
+    },
 ];
 
 /// How lights are found.
@@ -64,6 +74,7 @@ pub(super) enum Mode {
 pub(super) struct PathTracer {
     mode: Mode,
     roulette: u32,
+    equiangular: bool,
 }
 
 impl Mode {
@@ -80,7 +91,11 @@ impl Mode {
 impl PathTracer {
     /// For those who take its estimates at single vertices.
     pub(super) fn of_mode(mode: Mode) -> Self {
-        Self { mode, roulette: 0 }
+        Self {
+            mode,
+            roulette: 0,
+            equiangular: false,
+        }
     }
 }
 
@@ -88,7 +103,13 @@ fn build(params: &Params) -> Box<dyn Integrator> {
     let mode = Mode::of(params);
     let sampler = SamplerKind::of(params);
     let roulette = u32::try_from(params.integer("roulette")).unwrap_or(u32::MAX);
-    Box::new(Tiled::new(PathTracer { mode, roulette }, sampler))
+    let equiangular = params.choice("equiangular") == "on";
+    let tracer = PathTracer {
+        mode,
+        roulette,
+        equiangular,
+    };
+    Box::new(Tiled::new(tracer, sampler))
 }
 
 /// Words that neither shadow rays nor hits find.

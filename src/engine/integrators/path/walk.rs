@@ -14,7 +14,7 @@ use crate::engine::path::ClassId;
 use crate::engine::sampling::{Sampler, mis};
 
 /// Most events of a path; beyond, it is cut and counted.
-const MAX_EVENTS: u32 = 10_000_000;
+pub(super) const MAX_EVENTS: u32 = 10_000_000;
 /// Dimensions reserved per vertex: four for the walk, four for the shadow ray.
 const VERTEX_DIMENSIONS: u32 = 8;
 /// Survival of paths that lost nothing: with 1 a walk between perfect mirrors would not end.
@@ -32,7 +32,7 @@ pub(in crate::engine::integrators) struct Walk {
     /// Product of the squared index ratios: roulette looks at what returns to the eye's medium.
     eta2: f32,
     /// Where the last event happened, and how.
-    last: Option<Scattered>,
+    pub(super) last: Option<Scattered>,
 }
 
 impl Walk {
@@ -68,6 +68,22 @@ impl Walk {
         }
     }
 
+    /// This walk after scattering at `p` in a medium, in a direction of density `pdf_dir` in 1/sr.
+    /// The albedo is in the throughput already.
+    pub fn after_volume(&self, p: Vec3A, pdf_dir: f32, suffix: ClassId) -> Self {
+        Self {
+            throughput: self.throughput,
+            suffix,
+            depth: self.depth + 1,
+            eta2: self.eta2,
+            last: Some(Scattered {
+                p,
+                event: Event::Volume,
+                pdf_dir,
+            }),
+        }
+    }
+
     /// Russian roulette after `from` events with the random number `u`; false if the walk ends.
     /// Survival divides the throughput and enters no weight.
     pub fn survives(&mut self, from: u32, u: f32) -> bool {
@@ -80,7 +96,7 @@ impl Walk {
     }
 }
 
-struct Scattered {
+pub(in crate::engine::integrators) struct Scattered {
     p: Vec3A,
     event: Event,
     pdf_dir: f32,
@@ -95,6 +111,11 @@ impl RayIntegrator for PathTracer {
         out: &mut SampleRadiance<'_>,
         stats: &mut RenderStats,
     ) {
+        // Scenes without media never come near the code that knows of them.
+        if cx.plan.features.media {
+            self.radiance_in_media(cx, ray, sampler, out, stats);
+            return;
+        }
         let mut walk = Walk::start();
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
