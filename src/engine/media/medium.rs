@@ -1,5 +1,7 @@
 //! A medium, prepared.
 
+use glam::Vec3A;
+
 use super::grid::Grid;
 use super::phase::Phase;
 use crate::engine::math::Rgb;
@@ -16,6 +18,7 @@ pub struct Medium {
     pub emission: Rgb,
     /// Where scattered light goes.
     pub phase: Phase,
+    pub(super) scatters: bool,
     /// The density, 1 if absent.
     pub(super) grid: Option<Grid>,
 }
@@ -47,6 +50,11 @@ impl Medium {
             if count == 0 || values.len() != count || !values.iter().all(|x| amount(*x)) {
                 return wrong("its densities are finite, not negative, and as many as voxels");
             }
+            if desc.sigma_t.is_black() && !desc.emission.is_black() {
+                return wrong(
+                    "a grid that emits has an extinction, by which it is stepped through",
+                );
+            }
             if !grid.min.cmplt(grid.max).all() || !grid.min.is_finite() || !grid.max.is_finite() {
                 return wrong("the upper corner of its box lies above the lower one");
             }
@@ -56,6 +64,7 @@ impl Medium {
             albedo: desc.albedo,
             emission: desc.emission,
             phase: desc.phase.into(),
+            scatters: !(desc.sigma_t * desc.albedo).is_black(),
             grid: desc.grid.as_ref().map(Grid::new),
         })
     }
@@ -67,8 +76,15 @@ impl Medium {
     }
 
     /// Whether light that meets it may go on in another direction.
+    #[inline]
     pub fn scatters(&self) -> bool {
-        !(self.sigma_t * self.albedo).is_black()
+        self.scatters
+    }
+
+    /// Density at `p`.
+    #[inline]
+    pub fn density(&self, p: Vec3A) -> f32 {
+        self.grid.as_ref().map_or(1.0, |g| g.density(p))
     }
 
     /// Bytes held.

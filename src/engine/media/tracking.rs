@@ -104,6 +104,13 @@ impl Medium {
             };
         };
         match &self.grid {
+            // What only absorbs needs no chance to end a flight.
+            None if !self.scatters => Tracked {
+                t: None,
+                weight: self.transmittance(ray, span, draws),
+                emitted: self.emitted_within(span.1 - span.0),
+            },
+            Some(grid) if !self.scatters => self.attenuate(grid, ray, span, draws),
             None => self.track_homogeneous(span, &channel, draws),
             Some(grid) => self.track_grid(grid, ray, span, &channel, draws),
         }
@@ -159,12 +166,7 @@ impl Medium {
         for (begin, end, bound) in grid.majorants.walk(ray, grid.clip(ray, span)) {
             let majorant = bound * most;
             let mut t = begin;
-            loop {
-                let step = depth / majorant; // infinite where the cell is empty
-                if !(t + step < end) {
-                    depth -= (end - t) * majorant;
-                    break;
-                }
+            while let Some(step) = step_within(depth, majorant, end - t) {
                 t += step;
                 let density = grid.density(ray.at(t));
                 draws.exceeded += u64::from(density > bound);
@@ -184,6 +186,7 @@ impl Medium {
                 found *= 1.0 / found.max_component();
                 depth = free_path(draws.next());
             }
+            depth -= (end - t) * majorant;
         }
         Tracked {
             t: None,
@@ -197,39 +200,38 @@ impl Medium {
     pub fn transmittance(&self, ray: &Ray, span: (f32, f32), draws: &mut Draws) -> Rgb {
         match &self.grid {
             None => self.sigma_t.map(|sigma| through(sigma, span.1 - span.0)),
-            Some(grid) => self.transmittance_of(grid, ray, span, draws),
+            Some(grid) => self.attenuate(grid, ray, span, draws).weight,
         }
     }
 
-    fn transmittance_of(&self, grid: &Grid, ray: &Ray, span: (f32, f32), draws: &mut Draws) -> Rgb {
+    /// Ratio tracking: nothing is scattered, all that is met attenuates.
+    fn attenuate(&self, grid: &Grid, ray: &Ray, span: (f32, f32), draws: &mut Draws) -> Tracked {
         let most = self.sigma_t.max_component();
-        let mut transmittance = Rgb::WHITE;
+        let mut tracked = Tracked::THROUGH;
         let mut depth = free_path(draws.next());
         for (begin, end, bound) in grid.majorants.walk(ray, grid.clip(ray, span)) {
             let majorant = bound * most;
             let mut t = begin;
-            loop {
-                let step = depth / majorant;
-                if !(t + step < end) {
-                    depth -= (end - t) * majorant;
-                    break;
-                }
+            while let Some(step) = step_within(depth, majorant, end - t) {
                 t += step;
                 let density = grid.density(ray.at(t));
                 draws.exceeded += u64::from(density > bound);
                 let share = density / majorant;
-                transmittance *= (self.sigma_t * share).map(|p| 1.0 - p.min(1.0));
-                let left = transmittance.max_component();
+                tracked.emitted += tracked.weight * self.emission * share;
+                tracked.weight *= (self.sigma_t * share).map(|p| 1.0 - p.min(1.0));
+                let left = tracked.weight.max_component();
                 if left < ROULETTE_BELOW {
                     if draws.next() * ROULETTE_BELOW >= left {
-                        return Rgb::BLACK;
+                        tracked.weight = Rgb::BLACK;
+                        return tracked;
                     }
-                    transmittance *= ROULETTE_BELOW / left;
+                    tracked.weight *= ROULETTE_BELOW / left;
                 }
                 depth = free_path(draws.next());
             }
+            depth -= (end - t) * majorant;
         }
-        transmittance
+        tracked
     }
 
     /// σ_s exp(−σ_t t): the share of light per length that is scattered at the distance `t` of a
@@ -257,6 +259,14 @@ impl Medium {
 #[inline]
 fn free_path(u: f32) -> f32 {
     -f32::ln_1p(-u)
+}
+
+/// How far it is to the next collision, if that is within `length`. Nothing collides where the
+/// bound is 0.
+#[inline]
+fn step_within(depth: f32, majorant: f32, length: f32) -> Option<f32> {
+    let step = depth / majorant;
+    (step < length).then_some(step)
 }
 
 /// exp(−σ t); 1 for σ = 0 at infinity, too.
