@@ -108,7 +108,11 @@ fn medium(sigma_t: [f32; 3], albedo: [f32; 3], grid: Option<GridDesc>) -> Medium
         medium: MediumDesc {
             sigma_t: sigma_t.into(),
             albedo: albedo.into(),
-            emission: Rgb::splat(0.25),
+            emission: if sigma_t == [0.0; 3] {
+                Rgb::BLACK
+            } else {
+                Rgb::splat(0.25)
+            },
             phase: PhaseDesc::Isotropic,
             grid,
         },

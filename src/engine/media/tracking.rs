@@ -122,7 +122,7 @@ impl Medium {
         let t = free_path(draws.next()) / self.sigma_t[channel.index];
         if t < length {
             let density = self.sigma_t * channel.through(self.sigma_t, t);
-            let weight = density * self.albedo * (1.0 / channel.mean(density));
+            let weight = density * self.albedo / channel.mean(density);
             return Tracked {
                 t: Some(span.0 + t),
                 weight,
@@ -132,7 +132,7 @@ impl Medium {
         let through = channel.through(self.sigma_t, length);
         Tracked {
             t: None,
-            weight: through * (1.0 / channel.mean(through)),
+            weight: through / channel.mean(through),
             emitted,
         }
     }
@@ -170,7 +170,7 @@ impl Medium {
                 t += step;
                 let density = grid.density(ray.at(t));
                 draws.exceeded += u64::from(density > bound);
-                let weight = found * (1.0 / channel.mean(found));
+                let weight = found / channel.mean(found);
                 emitted += weight * self.emission * (density / majorant);
                 // Probability of a collision with the medium itself.
                 let real = (self.sigma_t * (density / majorant)).map(|p| p.min(1.0));
@@ -178,7 +178,7 @@ impl Medium {
                     let found = found * real;
                     return Tracked {
                         t: Some(t),
-                        weight: found * self.albedo * (1.0 / channel.mean(found)),
+                        weight: found * self.albedo / channel.mean(found),
                         emitted,
                     };
                 }
@@ -190,7 +190,7 @@ impl Medium {
         }
         Tracked {
             t: None,
-            weight: found * (1.0 / channel.mean(found)),
+            weight: found / channel.mean(found),
             emitted,
         }
     }
@@ -313,9 +313,13 @@ impl Channel {
         })
     }
 
-    /// Σ q_c p_c.
+    /// Σ q_c p_c; exact where all channels are alike, so that light that is only scattered keeps its
+    /// strength to the last digit.
     #[inline]
     fn mean(&self, p: Rgb) -> f32 {
+        if p[0] == p[1] && p[1] == p[2] {
+            return p[0];
+        }
         (self.q * p).to_array().iter().sum()
     }
 
