@@ -34,6 +34,9 @@ pub struct Row {
     /// Words that cannot be found, of integrators only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<Vec<MissingWords>>,
+    /// Whether scenes with participating media can be rendered, of integrators only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub media: Option<bool>,
 }
 
 /// A parameter.
@@ -84,7 +87,11 @@ fn details(row: &Row) -> Vec<String> {
         .iter()
         .flatten()
         .map(|m| format!("cannot find {} with {}: {}", m.words, m.when, m.why));
-    params.chain(missing).collect()
+    let media = match row.media {
+        Some(false) => Some("does not render participating media".to_owned()),
+        _ => None,
+    };
+    params.chain(missing).chain(media).collect()
 }
 
 fn integrator(entry: &Entry) -> Row {
@@ -94,6 +101,7 @@ fn integrator(entry: &Entry) -> Row {
         summary: entry.summary.to_owned(),
         params: Some(entry.params.iter().map(param).collect()),
         missing: Some(missing(entry)),
+        media: Some(entry.media),
     }
 }
 

@@ -61,6 +61,7 @@ pub fn listed() -> Result<Vec<Row>, CliError> {
             summary: desc.description,
             params: None,
             missing: None,
+            media: None,
         })
     };
     embedded::all().iter().map(row).collect()
@@ -80,6 +81,9 @@ pub fn camera(desc: &CameraDesc, size: UVec2) -> Result<Camera, CliError> {
 
 /// What a job needs computed.
 pub fn plan(job: &RenderJob) -> Result<RenderPlan, CliError> {
+    if let Some(why) = job.settings.integrator.refusal(&job.scene.features) {
+        return Err(CliError::usage(why));
+    }
     RenderPlan::new(&job.scene, job.camera.has_lens(), &job.settings.layers)
         .map_err(|error| CliError::usage(error.to_string()))
 }

@@ -4,3 +4,4 @@
 pub mod agreement;
 pub mod reference;
 pub mod render;
+pub mod volumes;

@@ -8,7 +8,8 @@ use super::ray::Ray;
 /// A point of a surface, seen from `wo`.
 ///
 /// Invariant: `wo` points away from the surface; `n_g` is the geometric normal of the front side
-/// (counter-clockwise, or outward) whichever side is seen; `n_s` lies in its hemisphere.
+/// (counter-clockwise, or outward) whichever side is seen; `n_s` lies in its hemisphere. A place
+/// in a medium has no normal: both are 0, as is `p_error`, and rays leave it from where it is.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInteraction {
     /// Position.
@@ -34,6 +35,31 @@ pub struct SurfaceInteraction {
 }
 
 impl SurfaceInteraction {
+    /// A place in a medium at the distance `t` of `ray`.
+    pub fn in_volume(ray: &Ray, t: f32) -> Self {
+        Self {
+            p: ray.at(t),
+            p_error: Vec3A::ZERO,
+            n_g: Vec3A::ZERO,
+            n_s: Vec3A::ZERO,
+            uv: Vec2::ZERO,
+            wo: -ray.d,
+            t,
+            material: 0,
+            light: None,
+            prim: u32::MAX,
+        }
+    }
+
+    /// Length of the projection of `w` on the normal; of all of it at a place in a medium.
+    #[inline]
+    pub fn projected(&self, w: Vec3A) -> f32 {
+        if self.n_g == Vec3A::ZERO {
+            return w.length();
+        }
+        self.n_g.dot(w).abs()
+    }
+
     /// A ray that leaves in the unit direction `d` without meeting this surface again at its
     /// origin.
     #[inline]

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::bidirectional::{
     Connector, FIRST_LIGHT_VERTEX, Heuristic, PhotonGrid, Sink, Strategies, Subpath, Technique,
-    VERTEX_DIMENSIONS, Walker,
+    Walker, vertex_dimensions,
 };
 use super::tiled::{CAMERA_DIMENSIONS, SamplerKind};
 use super::{
@@ -22,6 +22,7 @@ use crate::engine::film::pass_buffer::PassTile;
 use crate::engine::film::{Film, PassBuffer, SampleRadiance, SplatBuffer, SplatList};
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
+use crate::engine::plan::RenderPlan;
 use crate::engine::sampling::{IndependentSampler, Sampler, SobolSampler, Stream};
 use crate::engine::scene::features::SceneFeatures;
 
@@ -33,6 +34,7 @@ pub const ENTRY: Entry = Entry {
               lamps, and for caustics. Slower than path tracing in open, softly lit scenes.",
     params: PARAMS,
     missing,
+    media: true,
     build,
 };
 
@@ -152,6 +154,7 @@ impl Bidirectional {
         };
 
         // s = 0: light that the eye walk met by itself.
+        connector.glow(eye);
         if let Some(escape) = escape {
             connector.escape(eye, &escape, &mut work.densities);
         }
@@ -165,10 +168,11 @@ impl Bidirectional {
         // s = 1: shadow rays.
         for t in 2..=eye.len() {
             let vertex = eye.vertex(t - 1);
-            if !vertex.bsdf.has_non_delta() {
+            if !vertex.has_non_delta() {
                 continue;
             }
-            eye_sampler.seek(CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * (t as u32 - 2) + 4);
+            let stride = vertex_dimensions(cx.plan);
+            eye_sampler.seek(CAMERA_DIMENSIONS + stride * (t as u32 - 2) + 4);
             let u = eye_sampler.next_2d();
             let lights = &cx.scene.lights;
             if let Some((id, pmf)) = lights.sample(eye_sampler.next_1d())
@@ -189,7 +193,7 @@ impl Bidirectional {
         let Some(start) = start else { return };
         let lens = eye.densities(1)[0];
         for s in 1..=light.len() {
-            light_sampler.seek(lens_dimension(s));
+            light_sampler.seek(lens_dimension(cx.plan, s));
             let u = light_sampler.next_2d();
             if s == 1 {
                 connector.join_light(light, &start, &lens, u);
@@ -200,7 +204,7 @@ impl Bidirectional {
 
         // All others.
         for t in 2..=eye.len() {
-            if !eye.vertex(t - 1).bsdf.has_non_delta() {
+            if !eye.vertex(t - 1).has_non_delta() {
                 continue;
             }
             for s in 2..=light.len() {
@@ -211,10 +215,10 @@ impl Bidirectional {
 }
 
 /// Where the light sampler keeps the point of the lens for the vertex s − 1 of a light walk.
-pub(super) fn lens_dimension(s: usize) -> u32 {
+pub(super) fn lens_dimension(plan: &RenderPlan, s: usize) -> u32 {
     match s {
         1 => 6,
-        _ => FIRST_LIGHT_VERTEX + VERTEX_DIMENSIONS * (s as u32 - 2) + 4,
+        _ => FIRST_LIGHT_VERTEX + vertex_dimensions(plan) * (s as u32 - 2) + 4,
     }
 }
 

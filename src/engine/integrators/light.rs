@@ -28,6 +28,7 @@ pub const ENTRY: Entry = Entry {
               a mirror or through glass.",
     params: PARAMS,
     missing,
+    media: true,
     build,
 };
 
@@ -57,6 +58,12 @@ fn build(params: &Params) -> Box<dyn Integrator> {
 }
 
 fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
+    if features.shining_media {
+        return Some(Missing {
+            words: "L.*E".into(),
+            why: "light that a medium emits is met by walks from the eye alone",
+        });
+    }
     let mirror = "a light path cannot be joined to the lens at a mirror or at smooth glass";
     let sky = "light from infinity has no point that could be joined to the lens";
     let (words, why) = match (features.specular, features.environment) {
@@ -154,7 +161,7 @@ impl LightTracer {
             mergeable: false,
         };
         for s in 1..=path.len() {
-            sampler.seek(lens_dimension(s));
+            sampler.seek(lens_dimension(cx.plan, s));
             let u = sampler.next_2d();
             if s == 1 {
                 connector.join_light(path, &start, &lens, u);

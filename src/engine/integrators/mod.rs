@@ -81,8 +81,26 @@ pub struct Entry {
     pub params: &'static [ParamSpec],
     /// The words it cannot find in a scene of these features, as an expression, with the reason.
     pub missing: fn(&SceneFeatures, &Params) -> Option<Missing>,
+    /// Whether it renders participating media; scenes that hold some are refused otherwise.
+    pub media: bool,
     /// Prepares it.
     pub build: fn(&Params) -> Box<dyn Integrator>,
+}
+
+impl Entry {
+    /// Why it cannot render a scene of these features at all, in one sentence.
+    pub fn refusal(&self, features: &SceneFeatures) -> Option<String> {
+        if self.media || !features.media {
+            return None;
+        }
+        let able = REGISTRY.iter().filter(|entry| entry.media);
+        let ids: Vec<&str> = able.map(|entry| entry.id).collect();
+        Some(format!(
+            "{} does not know participating media, and this scene has some; choose one of {}",
+            self.id,
+            ids.join(", ")
+        ))
+    }
 }
 
 /// Paths that no strategy of an integrator can find.

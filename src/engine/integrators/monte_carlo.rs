@@ -23,6 +23,7 @@ pub const ENTRY: Entry = Entry {
               exponentially with the depth, and what lies deeper is lost.",
     params: PARAMS,
     missing,
+    media: false,
     build,
 };
 

@@ -28,6 +28,7 @@ pub const ENTRY: Entry = Entry {
               shrinks. Slow where light is spread evenly.",
     params: PARAMS,
     missing,
+    media: false,
     build,
 };
 

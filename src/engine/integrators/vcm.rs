@@ -27,6 +27,7 @@ pub const ENTRY: Entry = Entry {
               caustics seen in mirrors and through water too. Biased by a radius that shrinks.",
     params: PARAMS,
     missing,
+    media: true,
     build,
 };
 

@@ -29,6 +29,7 @@ pub const ENTRY: Entry = Entry {
               diffuse surfaces and no caustics. The first chapter of the story, not its end.",
     params: PARAMS,
     missing,
+    media: false,
     build,
 };
 

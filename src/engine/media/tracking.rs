@@ -45,16 +45,26 @@ impl Draws {
         }
     }
 
-    /// Numbers for something else, from the hash alone.
-    pub fn fork(&mut self) -> Self {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    /// All of them from a hash of `key`.
+    pub fn hashed(key: u64) -> Self {
         Self {
             first: [0.0; 2],
-            drawn: self.first.len(),
-            state: mix64(self.state ^ 0x5851_f42d_4c95_7f2d),
+            drawn: 2,
+            state: mix64(key),
             exceeded: 0,
             rays: 0,
         }
+    }
+
+    /// A key for [`Self::hashed`], other than those before.
+    pub fn key(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        mix64(self.state ^ 0x5851_f42d_4c95_7f2d)
+    }
+
+    /// Numbers for something else, from the hash alone.
+    pub fn fork(&mut self) -> Self {
+        Self::hashed(self.key())
     }
 
     /// The next number in [0, 1).

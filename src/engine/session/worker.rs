@@ -65,6 +65,10 @@ pub(super) fn run(shared: &Shared, pool: &rayon::ThreadPool) {
 impl Worker<'_> {
     fn accept(&mut self, epoch: u64, job: &RenderJob) {
         let previous = self.current.take().map(|c| c.renderer);
+        if let Some(why) = job.settings.integrator.refusal(&job.scene.features) {
+            self.publish_error(epoch, why);
+            return;
+        }
         match Renderer::replace(previous, job) {
             Ok(renderer) => {
                 self.current = Some(Current {

@@ -17,6 +17,8 @@ use crate::engine::geometry::{Ray, offset_origin};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
 use crate::engine::math::Rgb;
+use crate::engine::math::hash::combine;
+use crate::engine::media::{Draws, Inside};
 use crate::engine::path::ClassId;
 
 /// A strategy: number of vertices from the light and from the lens.
@@ -66,9 +68,9 @@ impl End {
         Self {
             class,
             diffuse: event == Event::Diffuse,
-            f: v.bsdf.eval(event, v.si.wo, wi, transport),
-            toward: v.bsdf.pdf(event, v.si.wo, wi),
-            back: v.bsdf.pdf(event, wi, v.si.wo),
+            f: v.eval(event, v.si.wo, wi, transport),
+            toward: v.pdf(event, v.si.wo, wi),
+            back: v.pdf(event, wi, v.si.wo),
         }
     }
 }
@@ -83,15 +85,6 @@ impl<K: Sink> Connector<'_, K> {
             .max_depth
             .is_none_or(|max| s + t <= max as usize + 2);
         short && self.strategies.is_on(s, t)
-    }
-
-    /// Whether light gets through; `known` holds the answer once it is asked for.
-    #[inline]
-    fn visible(&mut self, known: &mut Option<f32>, ray: impl FnOnce() -> Ray) -> f32 {
-        *known.get_or_insert_with(|| {
-            self.stats.rays += 1;
-            self.cx.scene.transmittance_along(ray())
-        })
     }
 
     /// Density with which an event at vertex `i` of `path` draws the vertex before it, if its
@@ -211,7 +204,7 @@ impl<K: Sink> Connector<'_, K> {
         let shadow_ratio = end.shadow_ratio(sample.pdf_dir, le, p);
         let incident = v.throughput * sample.radiance * (1.0 / (pmf * sample.pdf_dir));
         let mut visibility = None;
-        for event in v.bsdf.non_delta_events() {
+        for event in v.non_delta_events() {
             let class = self.cx.plan.classes.prepend(event.letter(), v.class);
             if !self.cx.plan.is_wanted(class) {
                 continue;
@@ -220,14 +213,19 @@ impl<K: Sink> Connector<'_, K> {
             if z.f.is_black() {
                 continue;
             }
-            let visible = self.visible(&mut visibility, || {
-                if sample.distance.is_finite() {
-                    v.si.spawn_ray_to(sample.target)
-                } else {
-                    v.si.spawn_ray(wi)
-                }
-            });
-            if visible == 0.0 {
+            let from = (self.leaving(v, wi), combine(v.key, 1));
+            let visible = self.visible(
+                &mut visibility,
+                || from,
+                || {
+                    if sample.distance.is_finite() {
+                        v.si.spawn_ray_to(sample.target)
+                    } else {
+                        v.si.spawn_ray(wi)
+                    }
+                },
+            );
+            if visible.is_black() {
                 return;
             }
             let join = Join {
@@ -273,13 +271,13 @@ impl<K: Sink> Connector<'_, K> {
         let throughput = z.throughput * y.throughput * (1.0 / distance2);
         let plan = self.cx.plan;
         let mut visibility = None;
-        for event in z.bsdf.non_delta_events() {
+        for event in z.non_delta_events() {
             let suffix = plan.classes.prepend(event.letter(), z.class);
             let eye_end = End::new(z, event, suffix, wi, Transport::Radiance);
             if eye_end.f.is_black() {
                 continue;
             }
-            for event in y.bsdf.non_delta_events() {
+            for event in y.non_delta_events() {
                 let prefix = plan.classes.append(y.class, event.letter());
                 let class = plan.classes.join(prefix, suffix);
                 if !plan.is_wanted(class) {
@@ -290,8 +288,9 @@ impl<K: Sink> Connector<'_, K> {
                     continue;
                 }
                 let ray = || z.si.spawn_ray_to_surface(&y.si);
-                let visible = self.visible(&mut visibility, ray);
-                if visible == 0.0 {
+                let from = (self.leaving(z, wi), combine(z.key, y.key));
+                let visible = self.visible(&mut visibility, || from, ray);
+                if visible.is_black() {
                     return;
                 }
                 let join = Join {
@@ -385,7 +384,7 @@ impl<K: Sink> Connector<'_, K> {
         let importance = y.throughput * (sample.importance / sample.pdf_dir);
         let seen = area_density(self.lens_pdf(&sample), sample.target, &y.si);
         let mut visibility = None;
-        for event in y.bsdf.non_delta_events() {
+        for event in y.non_delta_events() {
             let class = self.cx.plan.classes.append(y.class, event.letter());
             if !self.cx.plan.is_wanted(class) {
                 continue;
@@ -394,8 +393,10 @@ impl<K: Sink> Connector<'_, K> {
             if end.f.is_black() {
                 continue;
             }
-            let visible = self.visible(&mut visibility, || y.si.spawn_ray_to(sample.target));
-            if visible == 0.0 {
+            let from = (self.leaving(y, sample.wi), combine(y.key, 2));
+            let ray = || y.si.spawn_ray_to(sample.target);
+            let visible = self.visible(&mut visibility, || from, ray);
+            if visible.is_black() {
                 return;
             }
             let join = Join {
@@ -431,7 +432,9 @@ impl<K: Sink> Connector<'_, K> {
             return;
         }
         let origin = offset_origin(emission.p, emission.p_error, n, sample.wi);
-        let visible = self.visible(&mut None, || Ray::between(origin, sample.target));
+        let from = (start.inside, start.key);
+        let ray = || Ray::between(origin, sample.target);
+        let visible = self.visible(&mut None, || from, ray);
         let flux = emission.radiance * (cos / (start.pmf * emission.pdf_pos));
         let value = flux * (sample.importance / sample.pdf_dir) * visible;
         if value.is_black() {

@@ -6,12 +6,13 @@ use crate::engine::geometry::SurfaceInteraction;
 use crate::engine::light::Light;
 
 /// Density in 1/m² of the point `si` if a walk at `from` draws the direction to it with the
-/// density `pdf_dir` in 1/sr.
+/// density `pdf_dir` in 1/sr. The density of distances is in none (CONTRACT rule 6): for places in
+/// a medium it is the same factor in all strategies, but for transmittance.
 #[inline]
 pub fn area_density(pdf_dir: f32, from: Vec3A, si: &SurfaceInteraction) -> f32 {
     let to = si.p - from;
     let distance2 = to.length_squared();
-    pdf_dir * (si.n_g.dot(to).abs() / distance2.sqrt()) / distance2
+    pdf_dir * (si.projected(to) / distance2.sqrt()) / distance2
 }
 
 /// The light end of a path.
@@ -53,7 +54,7 @@ impl LightEnd {
     #[inline]
     pub fn depart(&self, le: (f32, f32), d: Vec3A, si: &SurfaceInteraction) -> f32 {
         if self.infinite {
-            le.0 * si.n_g.dot(d).abs()
+            le.0 * si.projected(d)
         } else {
             area_density(le.1, self.p, si)
         }

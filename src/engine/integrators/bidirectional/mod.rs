@@ -9,13 +9,17 @@
 //! No strategy has t = 0: no walk meets a pinhole, nor is it looked for on a lens.
 //!
 //! Densities are in area measure, 1/m². Where a light lies at infinity, v₀ is a direction, counted
-//! in 1/sr, and the density of v₁ is that of parallel rays, 1/m² across them.
+//! in 1/sr, and the density of v₁ is that of parallel rays, 1/m² across them. Vertices in a medium
+//! have densities in 1/m², too, of directions alone: the density of distances is no part of them.
 
 mod connect;
 mod ends;
+mod flight;
 mod merge;
 mod strategies;
 mod subpath;
+mod vertex;
+mod visibility;
 mod weight;
 
 #[cfg(test)]
@@ -25,7 +29,6 @@ pub use connect::{Connector, Sink, Technique};
 pub use ends::LightEnd;
 pub use merge::{PhotonGrid, PhotonList};
 pub use strategies::{Heuristic, Strategies};
-pub use subpath::{
-    Escape, FIRST_LIGHT_VERTEX, LightStart, Subpath, VERTEX_DIMENSIONS, Vertex, Walker,
-};
+pub use subpath::{Escape, FIRST_LIGHT_VERTEX, LightStart, Subpath, Walker, vertex_dimensions};
+pub use vertex::Vertex;
 pub use weight::{Density, Join, Meeting, weight};

@@ -1,6 +1,6 @@
 //! The two walks. They keep what connections and weights need of every vertex.
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
 use super::ends::{LightEnd, area_density};
 use super::weight::Density;
@@ -10,12 +10,19 @@ use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::EmissionSample;
 use crate::engine::math::Rgb;
+use crate::engine::media::{Draws, Inside, Phase};
 use crate::engine::path::ClassId;
+use crate::engine::plan::RenderPlan;
 use crate::engine::sampling::Sampler;
+use crate::engine::scene::Arrival;
 
 /// Dimensions reserved per vertex: direction 0–1, event 2, roulette 3, light or lens 4–5, choice of
-/// a light 6, opacity 7.
-pub const VERTEX_DIMENSIONS: u32 = 8;
+/// a light 6, opacity 7; in media channel and distance 8–9, seeds of the flight 10–11.
+#[inline]
+pub fn vertex_dimensions(plan: &RenderPlan) -> u32 {
+    if plan.features.media { 12 } else { 8 }
+}
+
 /// First dimension of the first vertex after a light: position 0–1, direction 2–3, choice 4, a
 /// point of the lens 6–7.
 pub const FIRST_LIGHT_VERTEX: u32 = 8;
@@ -24,29 +31,14 @@ const MAX_EVENTS: usize = 10_000_000;
 /// Survival of walks that lost nothing: with 1 a walk between perfect mirrors would not end.
 const MAX_SURVIVAL: f32 = 0.98;
 
-/// A surface point of a subpath.
-#[derive(Clone, Debug)]
-pub struct Vertex {
-    /// Where; `wo` points back along the walk.
-    pub si: SurfaceInteraction,
-    /// Scattering there.
-    pub bsdf: Bsdf,
-    /// Product of f·cosθ/pdf over the events before, survival divided out: radiance from here
-    /// times this reaches the pixel, or the flux that arrives here from the light in W.
-    pub throughput: Rgb,
-    /// Class of the events between this vertex and the end the walk began at, its own excluded
-    /// (CONTRACT rule 4).
-    pub class: ClassId,
-    /// The event drawn there to go on. It restricts nothing that is evaluated there.
-    pub event: Option<Event>,
-}
-
 /// A subpath. Vertex 0, the lens or the light, has densities only.
 #[derive(Clone, Debug, Default)]
 pub struct Subpath {
     vertices: Vec<Vertex>,
     /// Of vertex 0 and of `vertices`.
     densities: Vec<Density>,
+    /// Light of media that an eye walk met on its way.
+    pub(super) glow: Vec<(ClassId, Rgb)>,
 }
 
 /// How an eye walk left the scene.
@@ -73,12 +65,17 @@ pub struct LightStart {
     pub emission: EmissionSample,
     /// Density of a shadow ray from v₁ to v₀ over that of this start; known with v₁.
     pub shadow_ratio: f32,
+    /// What its point is within.
+    pub inside: Inside,
+    /// Key of random numbers, in scenes with media.
+    pub key: u64,
 }
 
 impl Subpath {
     fn restart(&mut self, own: f32) {
         self.vertices.clear();
         self.densities.clear();
+        self.glow.clear();
         self.densities.push(Density {
             own,
             other: 0.0,
@@ -119,15 +116,17 @@ enum Origin {
 }
 
 /// What travels between two vertices.
-struct Flight {
-    ray: Ray,
-    throughput: Rgb,
+pub(super) struct Flight {
+    pub(super) ray: Ray,
+    pub(super) throughput: Rgb,
     class: ClassId,
     /// Density of the ray's direction, 1/sr.
     pdf_dir: f32,
     /// What the walk has kept of what it started with; roulette looks at it. For radiance the
     /// squared index ratios are taken out: what returns to the eye's medium counts.
-    kept: Rgb,
+    pub(super) kept: Rgb,
+    /// What the ray's origin is within.
+    pub(super) inside: Inside,
 }
 
 /// Makes subpaths.
@@ -157,6 +156,7 @@ impl Walker<'_> {
             class: ClassId::EMPTY,
             pdf_dir,
             kept: Rgb::WHITE,
+            inside: self.cx.scene.inside(ray.o),
         };
         let origin = Origin::Lens(ray.o);
         let end = self.walk(origin, flight, first_dimension, sampler, path, stats)?;
@@ -184,18 +184,22 @@ impl Walker<'_> {
         let le = (emission.pdf_pos, emission.pdf_dir);
         let end = LightEnd::new(id, light, emission.p, emission.n);
         path.restart(end.start(pmf, le));
+        let inside = self.cx.scene.inside(emission.ray.o);
         let flight = Flight {
             ray: emission.ray,
             throughput: emission.flux() / pmf,
             class: ClassId::EMPTY,
             pdf_dir: emission.pdf_dir,
             kept: Rgb::WHITE,
+            inside,
         };
         let mut start = LightStart {
             end,
             pmf,
             emission,
             shadow_ratio: 1.0,
+            inside,
+            key: Draws::new(u_pos.into(), u_dir.into()).key(),
         };
         if !flight.throughput.is_black() {
             let origin = Origin::Light(end, le);
@@ -242,7 +246,7 @@ impl Walker<'_> {
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let events = path.vertices.len();
-            let first = first_dimension + VERTEX_DIMENSIONS * events as u32;
+            let first = first_dimension + vertex_dimensions(self.cx.plan) * events as u32;
             sampler.seek(first);
             let (direction, event, roulette) =
                 (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
@@ -252,12 +256,25 @@ impl Walker<'_> {
                 Transport::Radiance => stats.ray_at(events as u32),
                 Transport::Importance => stats.rays += 1,
             }
-            let opacity_number = || {
-                sampler.seek(first + 7);
-                sampler.next_1d()
-            };
-            let Some(si) = self.cx.scene.intersect(&flight.ray, opacity_number) else {
-                return Some(flight);
+            let (si, phase, key) = if self.cx.plan.features.media {
+                let (class, before) = (flight.class, flight.throughput);
+                let fly = self.fly(&mut flight, first, sampler, stats);
+                if !fly.emitted.is_black() && transport == Transport::Radiance {
+                    path.glow.push((class, before * fly.emitted));
+                }
+                match fly.met {
+                    Some((si, phase)) => (si, phase, fly.key),
+                    None => return Some(flight),
+                }
+            } else {
+                let opacity_number = || {
+                    sampler.seek(first + 7);
+                    sampler.next_1d()
+                };
+                match self.cx.scene.intersect(&flight.ray, opacity_number) {
+                    Some(si) => (si, None, 0),
+                    None => return Some(flight),
+                }
             };
             let own = match (path.vertices.last(), origin) {
                 (Some(last), _) => area_density(flight.pdf_dir, last.si.p, &si),
@@ -274,8 +291,14 @@ impl Walker<'_> {
                 mergeable: false,
             });
             path.vertices.push(Vertex {
-                bsdf: self.cx.scene.bsdf(&si),
+                bsdf: match phase {
+                    Some(_) => Bsdf::new(&si),
+                    None => self.cx.scene.bsdf(&si),
+                },
                 si,
+                phase,
+                inside: flight.inside,
+                key,
                 throughput: flight.throughput,
                 class: flight.class,
                 event: None,
@@ -295,10 +318,10 @@ impl Walker<'_> {
 
             // One event, drawn by the roulette between the lobes.
             let vertex = path.vertices.last()?;
-            if vertex.bsdf.is_empty() {
+            if vertex.bsdf.is_empty() && phase.is_none() {
                 return None;
             }
-            let Some(sample) = vertex.bsdf.sample(si.wo, event, direction, transport) else {
+            let Some(sample) = vertex.sample(event, direction, transport) else {
                 stats.below_horizon += u64::from(vertex.bsdf.has(Event::Glossy));
                 return None;
             };
@@ -333,6 +356,9 @@ impl Walker<'_> {
         flight.kept *= sample.weight;
         flight.pdf_dir = sample.pdf_dir;
         flight.ray = si.spawn_ray(sample.wi);
+        if plan.features.media {
+            flight.inside = self.cx.scene.beyond(&flight.inside, si, sample.wi);
+        }
         let pointless = match transport {
             Transport::Radiance => {
                 flight.kept *= sample.eta * sample.eta;
@@ -378,7 +404,7 @@ impl Walker<'_> {
 fn backward_pdf(vertex: &Vertex, sample: &BsdfSample) -> f32 {
     let (wo, wi) = (vertex.si.wo, sample.wi);
     if !sample.event.is_delta() {
-        return vertex.bsdf.pdf(sample.event, wi, wo);
+        return vertex.pdf(sample.event, wi, wo);
     }
     let probability = vertex.bsdf.event_probability(sample.event, wi);
     if sample.eta == 1.0 {

@@ -27,6 +27,7 @@ pub const ENTRY: Entry = Entry {
               of small lights and for light behind doors.",
     params: PARAMS,
     missing,
+    media: true,
     build,
 };
 

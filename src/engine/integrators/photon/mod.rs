@@ -33,6 +33,7 @@ pub const ENTRY: Entry = Entry {
               Biased: it blurs light over the radius of its photons.",
     params: params::PARAMS,
     missing,
+    media: false,
     build: |params| Box::new(PhotonMapper::new(PhotonSettings::new(params))),
 };
 

@@ -34,6 +34,7 @@ pub const ENTRY: Entry = Entry {
               elsewhere slower than what it runs over, and its noise comes in patches.",
     params: PARAMS,
     missing,
+    media: true,
     build,
 };
 
