@@ -8,7 +8,8 @@ use glam::{Vec2, Vec3A};
 use super::ends::{LightEnd, area_density};
 use super::merge::PhotonGrid;
 use super::strategies::Strategies;
-use super::subpath::{Escape, LightStart, Subpath, Vertex};
+use super::subpath::{Escape, LightStart, Subpath};
+use super::vertex::Vertex;
 use super::weight::{Density, Join, Meeting, weight};
 use crate::engine::bsdf::Transport;
 use crate::engine::camera::CameraSample;
@@ -18,7 +19,6 @@ use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
 use crate::engine::math::Rgb;
 use crate::engine::math::hash::combine;
-use crate::engine::media::{Draws, Inside};
 use crate::engine::path::ClassId;
 
 /// A strategy: number of vertices from the light and from the lens.

@@ -1,8 +1,9 @@
 //! The two walks. They keep what connections and weights need of every vertex.
 
-use glam::{Vec2, Vec3A};
+use glam::Vec3A;
 
 use super::ends::{LightEnd, area_density};
+use super::vertex::Vertex;
 use super::weight::Density;
 use crate::engine::bsdf::{Bsdf, BsdfSample, Transport};
 use crate::engine::event::Event;
@@ -10,11 +11,10 @@ use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::EmissionSample;
 use crate::engine::math::Rgb;
-use crate::engine::media::{Draws, Inside, Phase};
+use crate::engine::media::{Draws, Inside};
 use crate::engine::path::ClassId;
 use crate::engine::plan::RenderPlan;
 use crate::engine::sampling::Sampler;
-use crate::engine::scene::Arrival;
 
 /// Dimensions reserved per vertex: direction 0–1, event 2, roulette 3, light or lens 4–5, choice of
 /// a light 6, opacity 7; in media channel and distance 8–9, seeds of the flight 10–11.
