@@ -20,11 +20,13 @@ fn with_expressions(mut job: RenderJob, texts: &[&str]) -> RenderJob {
     job
 }
 
+/// Light tracing alone is left out: with the eye within the fog the places next to it bring 1/r²,
+/// whose variance is infinite.
 #[test]
 fn both_walks_agree_with_the_fog_references() {
     for scene in ["fog-isotropic", "fog-hg"] {
-        agrees_with_reference(scene, "bdpt", &[], 3);
-        agrees_with_reference(scene, "light", &[], 12);
+        agrees_with_reference(scene, "bdpt", &[], 4);
+        agrees_with_reference(scene, "vcm", &[("radius", "1e-6")], 4);
     }
 }
 
@@ -91,8 +93,10 @@ fn lights_of_every_kind_agree() {
         ("sun and sky", format!("{sun}, {sky}"), boxed),
     ] {
         let scene = open_air(&light, region);
-        let run =
-            |id: &str, passes| runs_of(with_expressions(job(&scene, id, &[]), &words), passes);
+        let run = |id: &str, passes| {
+            println!("{id}, {name}, {region}");
+            runs_of(with_expressions(job(&scene, id, &[]), &words), passes)
+        };
         let (path, bdpt, light) = (run("path", 128), run("bdpt", 32), run("light", 160));
         let of = |layers: &[usize]| -> Vec<(usize, usize)> {
             layers.iter().map(|i| (EXPR1 + i, EXPR1 + i)).collect()

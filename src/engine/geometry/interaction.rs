@@ -51,13 +51,10 @@ impl SurfaceInteraction {
         }
     }
 
-    /// Length of the projection of `w` on the normal; of all of it at a place in a medium.
+    /// Whether it is a place in a medium.
     #[inline]
-    pub fn projected(&self, w: Vec3A) -> f32 {
-        if self.n_g == Vec3A::ZERO {
-            return w.length();
-        }
-        self.n_g.dot(w).abs()
+    pub fn is_in_volume(&self) -> bool {
+        self.n_g == Vec3A::ZERO
     }
 
     /// A ray that leaves in the unit direction `d` without meeting this surface again at its

@@ -265,10 +265,11 @@ impl Medium {
     }
 }
 
-/// Optical thickness until the next collision; > 0 or infinitely small, never infinite.
+/// Optical thickness until the next collision; > 0 and finite. The smallest number stands for all
+/// that round to it: at 0 light would be scattered where it is.
 #[inline]
 fn free_path(u: f32) -> f32 {
-    -f32::ln_1p(-u)
+    -f32::ln_1p(-u.max(0.25 * f32::EPSILON))
 }
 
 /// How far it is to the next collision, if that is within `length`. Nothing collides where the

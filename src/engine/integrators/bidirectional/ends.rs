@@ -5,6 +5,9 @@ use glam::Vec3A;
 use crate::engine::geometry::SurfaceInteraction;
 use crate::engine::light::Light;
 
+/// A square of a distance whose inverse `f32` holds with room for densities of directions.
+const LEAST_DISTANCE2: f32 = 1e-30;
+
 /// Density in 1/m² of the point `si` if a walk at `from` draws the direction to it with the
 /// density `pdf_dir` in 1/sr. The density of distances is in none (CONTRACT rule 6): for places in
 /// a medium it is the same factor in all strategies, but for transmittance.
@@ -12,7 +15,11 @@ use crate::engine::light::Light;
 pub fn area_density(pdf_dir: f32, from: Vec3A, si: &SurfaceInteraction) -> f32 {
     let to = si.p - from;
     let distance2 = to.length_squared();
-    pdf_dir * (si.projected(to) / distance2.sqrt()) / distance2
+    if si.is_in_volume() {
+        // Where a medium is so dense that places round to one, they keep a density.
+        return pdf_dir / distance2.max(LEAST_DISTANCE2);
+    }
+    pdf_dir * (si.n_g.dot(to).abs() / distance2.sqrt()) / distance2
 }
 
 /// The light end of a path.
@@ -54,7 +61,11 @@ impl LightEnd {
     #[inline]
     pub fn depart(&self, le: (f32, f32), d: Vec3A, si: &SurfaceInteraction) -> f32 {
         if self.infinite {
-            le.0 * si.projected(d)
+            le.0 * if si.is_in_volume() {
+                1.0
+            } else {
+                si.n_g.dot(d).abs()
+            }
         } else {
             area_density(le.1, self.p, si)
         }
