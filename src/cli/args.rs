@@ -36,7 +36,7 @@ pub enum Command {
 }
 
 /// Arguments of `render`.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(
     after_help = "Without --spp, --seconds and --error it computes 64 samples per pixel; \
                         with several of them it stops at the first one reached."
@@ -77,6 +77,9 @@ pub struct RenderArgs {
     /// Threads; 0 is one a core.
     #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,
+    /// Frames of a sequence, such as 0-47 or all; `#` in the output's name is their number.
+    #[arg(long, value_name = "A-B")]
+    pub frames: Option<String>,
     /// Seed of all random numbers.
     #[arg(
         long,

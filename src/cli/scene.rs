@@ -10,7 +10,7 @@ use super::list::Row;
 use super::suggest::did_you_mean;
 use crate::engine::camera::Camera;
 use crate::engine::integrators::{self, Entry, Params, REGISTRY};
-use crate::engine::io::{embedded, scene_file};
+use crate::engine::io::{InputError, embedded, scene_file};
 use crate::engine::plan::RenderPlan;
 use crate::engine::scene::desc::CameraDesc;
 use crate::engine::scene::{Scene, SceneDesc};
@@ -21,11 +21,17 @@ pub const DEFAULT_SCENE: &str = "jensen-box";
 
 /// The scene called `name`: an embedded one, or else a file.
 pub fn read(name: &str) -> Result<SceneDesc, CliError> {
+    read_frame(name, 0)
+}
+
+/// A frame of the scene called `name`.
+pub fn read_frame(name: &str, frame: u32) -> Result<SceneDesc, CliError> {
+    let usage = |error: InputError| CliError::usage(error.to_string());
     if is_embedded(name) {
-        return embedded::read(name).map_err(|error| CliError::usage(error.to_string()));
+        return embedded::read_frame(name, frame).map_err(usage);
     }
     check_exists(name, &[])?;
-    read_file(Path::new(name))
+    scene_file::load_frame(Path::new(name), frame).map_err(usage)
 }
 
 /// Fails with a sentence if `name` is neither a scene nor a file; the suggestion may be one of

@@ -86,8 +86,7 @@ pub fn scene(
         meshes,
         spheres,
         lights,
-        media: Default::default(),
-        warnings: Vec::new(),
+        ..SceneDesc::default()
     };
     Arc::new(Scene::build(&desc).unwrap_or_else(|e| panic!("{e}")))
 }

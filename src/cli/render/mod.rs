@@ -4,6 +4,7 @@ mod log;
 mod notes;
 mod options;
 mod progress;
+mod sequence;
 mod stop;
 
 use std::sync::Arc;
@@ -27,16 +28,23 @@ use stop::State;
 
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), CliError> {
-    let options = RenderOptions::new(&args)?;
-    let desc = scene::read(&args.scene)?;
+    match &args.frames {
+        Some(frames) => sequence::run(&args, frames),
+        None => picture_of(&args, 0, &cancel_on_interrupt()?),
+    }
+}
+
+/// Renders one frame; a still has one.
+fn picture_of(args: &RenderArgs, frame: u32, cancel: &Cancel) -> Result<(), CliError> {
+    let options = RenderOptions::new(args)?;
+    let desc = scene::read_frame(&args.scene, frame)?;
     let size = options
         .size
         .unwrap_or(UVec2::new(desc.camera.width, desc.camera.height));
     let log = Log::open(args.log.as_deref(), args.reference.as_deref(), size)?;
-    let cancel = cancel_on_interrupt()?;
     let pool = thread_pool(options.threads)?;
-    let rendered = pool.install(|| render(&options, desc, size, log, &cancel))?;
-    finish(&args, &options, &rendered)
+    let rendered = pool.install(|| render(&options, desc, size, log, cancel))?;
+    finish(args, &options, &rendered)
 }
 
 /// A render that is done.

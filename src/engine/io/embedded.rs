@@ -5,7 +5,7 @@ use std::io::{Error, ErrorKind};
 
 use super::error::InputError;
 use super::source::FileSource;
-use super::{generated, scene_file};
+use super::{generated, scene_file, smoke};
 use crate::engine::scene::desc::SceneDesc;
 
 /// A scene within the program.
@@ -39,7 +39,7 @@ macro_rules! parts {
 scenes! {
     "jensen-box" "cornell" "glossy" "kajiya-spheres" "metal-ring" "cognac-glass" "pool"
     "veach-plates" "ajar-door" "many-lights" "sky-sun" "mesh-100k" "vcm-sun" "vcm-ceiling"
-    "vcm-point" "vcm-environment"
+    "vcm-point" "vcm-environment" "fog-spot" "glass-volume-caustic" "smoke" "milk"
 }
 
 parts! {
@@ -60,6 +60,7 @@ impl FileSource for Embedded {
             return Ok(Cow::Borrowed(bytes));
         }
         generated::obj(path)
+            .or_else(|| smoke::density(path))
             .map(|text| Cow::Owned(text.into_bytes()))
             .ok_or_else(|| Error::from(ErrorKind::NotFound))
     }
@@ -75,5 +76,13 @@ pub fn all() -> &'static [EmbeddedScene] {
 /// # Errors
 /// If there is none.
 pub fn read(id: &str) -> Result<SceneDesc, InputError> {
-    scene_file::load_from(&Embedded, &format!("{id}.toml"))
+    read_frame(id, 0)
+}
+
+/// Frame `frame` of the embedded scene called `id`.
+///
+/// # Errors
+/// If there is none.
+pub fn read_frame(id: &str, frame: u32) -> Result<SceneDesc, InputError> {
+    scene_file::load_frame_from(&Embedded, &format!("{id}.toml"), frame)
 }

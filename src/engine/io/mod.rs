@@ -20,6 +20,7 @@ mod mtl_files;
 pub mod obj;
 pub mod scene_file;
 mod shapes;
+mod smoke;
 pub mod source;
 mod toml;
 mod transform;

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::InputError;
 use super::fields::Fields;
 use super::materials::Colors;
-use super::source::{Disk, FileSource, reason};
+use super::source::{Disk, FileSource, OneFrame, reason};
 use super::value::{Node, SyntaxError, Value};
 use super::{camera, json, lights, materials, media, obj, shapes, toml};
 use crate::engine::scene::desc::SceneDesc;
@@ -23,6 +23,39 @@ pub fn load(path: &Path) -> Result<SceneDesc, InputError> {
 /// # Errors
 /// As [`load`].
 pub fn load_from(files: &dyn FileSource, path: &str) -> Result<SceneDesc, InputError> {
+    load_frame_from(files, path, 0)
+}
+
+/// Reads frame `frame` of the sequence in a file of the disk.
+///
+/// # Errors
+/// As [`load`], and if it has no such frame.
+pub fn load_frame(path: &Path, frame: u32) -> Result<SceneDesc, InputError> {
+    load_frame_from(&Disk, &path.to_string_lossy(), frame)
+}
+
+/// Reads frame `frame` of the sequence at `path` of `files`: in names of files `{frame}` stands for
+/// the number.
+///
+/// # Errors
+/// As [`load_frame`].
+pub fn load_frame_from(
+    files: &dyn FileSource,
+    path: &str,
+    frame: u32,
+) -> Result<SceneDesc, InputError> {
+    let frames = OneFrame { files, frame };
+    let scene = load_still(&frames, path)?;
+    let count = scene.frames.unwrap_or(1);
+    if frame >= count {
+        let last = count - 1;
+        let message = format!("there is no frame {frame}; the last of this scene is {last}");
+        return Err(InputError::in_file(path, message));
+    }
+    Ok(scene)
+}
+
+fn load_still(files: &dyn FileSource, path: &str) -> Result<SceneDesc, InputError> {
     let extension = path
         .rsplit_once('.')
         .map_or("", |(_, e)| e)
@@ -86,6 +119,11 @@ fn read(files: &dyn FileSource, file: &str, root: &Node) -> Result<SceneDesc, In
     scene.description = f
         .text("description")?
         .map_or_else(String::new, |d| d.0.to_owned());
+    let whole = |x: f32| x.fract() == 0.0 && (1.0..=1e6).contains(&x);
+    if let Some(node) = f.take("frames") {
+        let right = "a whole number of frames from 1 to 1000000";
+        scene.frames = Some(f.number_in(node, "frames", right, whole)? as u32);
+    }
     let right = "a table with position and target";
     scene.camera = camera::read(file, f.required("camera", right)?)?;
     if let Some(node) = f.take("media") {

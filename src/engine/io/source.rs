@@ -38,6 +38,21 @@ impl FileSource for Disk {
     }
 }
 
+/// The files of one frame of a sequence: `{frame}` in a name is its number.
+pub struct OneFrame<'a> {
+    /// Where all frames are.
+    pub files: &'a dyn FileSource,
+    /// The number.
+    pub frame: u32,
+}
+
+impl FileSource for OneFrame<'_> {
+    fn read(&self, path: &str) -> std::io::Result<Cow<'_, [u8]>> {
+        self.files
+            .read(&path.replace("{frame}", &self.frame.to_string()))
+    }
+}
+
 /// The reason of a failed read in words.
 pub fn reason(error: &Error) -> String {
     match error.kind() {

@@ -100,8 +100,9 @@ impl Iterator for CellWalk<'_> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        // `!(a < b)` ends a walk at NaN, too.
-        if !(self.t < self.end) {
+        // A comparison that ends a walk at NaN, too.
+        let goes_on = self.t < self.end;
+        if !goes_on {
             return None;
         }
         let (mut axis, mut leave) = (0, f32::INFINITY);

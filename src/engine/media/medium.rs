@@ -40,7 +40,7 @@ impl Medium {
             return wrong("its albedo lies between 0 and 1");
         }
         if let PhaseDesc::HenyeyGreenstein { g } = desc.phase
-            && !(g.abs() < 1.0)
+            && (g.is_nan() || g.abs() >= 1.0)
         {
             return wrong("g of its phase function lies between -1 and 1, both excluded");
         }

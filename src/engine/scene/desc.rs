@@ -31,6 +31,8 @@ pub struct SceneDesc {
     pub lights: Vec<LightDesc>,
     /// What is between the surfaces.
     pub media: MediaDesc,
+    /// Number of frames, if it is a sequence; this is one of them.
+    pub frames: Option<u32>,
     /// Sentences for the user about what was assumed or dropped while reading.
     pub warnings: Vec<String>,
 }
