@@ -244,6 +244,12 @@ impl Medium {
         tracked
     }
 
+    /// exp(−σ_t t), where the medium is homogeneous.
+    #[inline]
+    pub fn transmittance_over(&self, t: f32) -> Rgb {
+        self.sigma_t.map(|sigma| through(sigma, t))
+    }
+
     /// σ_s exp(−σ_t t): the share of light per length that is scattered at the distance `t` of a
     /// span's begin, where the medium is homogeneous.
     #[inline]

@@ -244,8 +244,13 @@ pub(super) fn follow(
     share: f32,
     to: &mut impl Witness,
 ) -> u64 {
-    let caustic = u64::from(walks.kind == MapKind::Caustic);
-    let item = (settings.index * 2 + caustic) * 2 + u64::from(pilot);
+    let kind = match walks.kind {
+        MapKind::Global => 0,
+        MapKind::Caustic => 1,
+        // Apart from all numbers of the other two.
+        MapKind::Volume => 1 << 40,
+    };
+    let item = (settings.index * 2 + kind) * 2 + u64::from(pilot);
     let index = (item, number);
     match settings.numbers {
         Numbers::Independent => {

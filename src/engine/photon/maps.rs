@@ -1,4 +1,4 @@
-//! Both maps of a scene.
+//! The maps of a scene.
 
 use super::emission::Emission;
 use super::map::{MapCounts, MapSettings, PhotonMap};
@@ -14,6 +14,8 @@ pub struct PhotonMaps {
     pub caustic: Option<PhotonMap>,
     /// All others.
     pub global: Option<PhotonMap>,
+    /// In media.
+    pub volume: Option<PhotonMap>,
 }
 
 /// Which maps are wanted, and how large.
@@ -23,6 +25,8 @@ pub struct MapsSettings {
     pub caustic: usize,
     /// Photons of the global map; 0: it is not built.
     pub global: usize,
+    /// Photons of the volume map; 0: it is not built.
+    pub volume: usize,
     /// The rest, `photons` left aside.
     pub map: MapSettings,
 }
@@ -38,7 +42,7 @@ impl PhotonMaps {
         settings: &MapsSettings,
         check: &(impl Fn() -> Result<(), E> + Sync),
     ) -> Result<Self, E> {
-        if scene.lights.is_empty() || !scene.features.diffuse {
+        if scene.lights.is_empty() {
             return Ok(Self::default());
         }
         let build = |kind, emission: &Emission, photons| {
@@ -49,6 +53,13 @@ impl PhotonMaps {
             PhotonMap::build(scene, classes, kind, emission, &settings, check)
         };
         let mut maps = Self::default();
+        if settings.volume > 0 && scene.features.volume {
+            let everywhere = &Emission::Everywhere;
+            maps.volume = Some(build(MapKind::Volume, everywhere, settings.volume)?);
+        }
+        if !scene.features.diffuse {
+            return Ok(maps);
+        }
         if settings.caustic > 0
             && let Some(aimed) = Emission::aimed(scene, ProjectionMap::new(scene))
         {
@@ -66,15 +77,15 @@ impl PhotonMaps {
 
     /// The maps there are.
     pub fn iter(&self) -> impl Iterator<Item = &PhotonMap> {
-        self.caustic.iter().chain(&self.global)
+        self.caustic.iter().chain(&self.global).chain(&self.volume)
     }
 
-    /// Bytes of both.
+    /// Bytes of all.
     pub fn memory_bytes(&self) -> usize {
         self.iter().map(PhotonMap::memory_bytes).sum()
     }
 
-    /// Rays and cut paths of both.
+    /// Rays and cut paths of all.
     pub fn counts(&self) -> impl Iterator<Item = &MapCounts> {
         self.iter().map(|m| &m.counts)
     }

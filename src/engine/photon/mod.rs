@@ -22,6 +22,8 @@ pub mod projection;
 pub mod record;
 pub mod rgbe;
 pub mod trace;
+mod trace_media;
+pub mod volume;
 
 pub use estimate::{Contribution, Disc, Weighed};
 pub use kdtree::{KdTree, SplitPlane, SplitRule};

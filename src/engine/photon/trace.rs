@@ -17,6 +17,8 @@ pub enum MapKind {
     Caustic,
     /// All others, the empty one too.
     Global,
+    /// Every prefix, of photons that a medium scatters.
+    Volume,
 }
 
 /// What becomes of a photon's power when it is scattered.
@@ -37,16 +39,26 @@ const LOSSLESS_EVENTS: u32 = 64;
 /// Survival from then on.
 const MAX_SURVIVAL: f32 = 0.98;
 /// Most events of a path; beyond, it is cut and counted.
-const MAX_PATH_EVENTS: u32 = 10_000_000;
+pub(super) const MAX_PATH_EVENTS: u32 = 10_000_000;
 /// Dimensions reserved a vertex.
 const VERTEX_DIMENSIONS: u32 = 8;
 
 /// What the events before a vertex were.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Prefix {
+pub(super) enum Prefix {
     Empty,
     Specular,
     Diffuse,
+}
+
+impl Prefix {
+    /// With one more event.
+    pub fn and(self, letter: Letter) -> Self {
+        match (self, letter) {
+            (Self::Diffuse, _) | (_, Letter::D | Letter::V) => Self::Diffuse,
+            (_, Letter::S | Letter::G) => Self::Specular,
+        }
+    }
 }
 
 /// What the walks of a map have in common.
@@ -80,6 +92,9 @@ impl Walks<'_> {
         let Some(start) = self.emission.sample(self.scene, sampler) else {
             return 0;
         };
+        if self.scene.features.media {
+            return self.follow_in_media(start, share, sampler, to);
+        }
         let mut ray = start.ray;
         let mut power = start.flux * share;
         let first_power = power.max_component();
@@ -116,10 +131,7 @@ impl Walks<'_> {
             let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Importance) else {
                 return rays;
             };
-            prefix = match (prefix, sample.event.letter()) {
-                (Prefix::Diffuse, _) | (_, Letter::D | Letter::V) => Prefix::Diffuse,
-                (_, Letter::S | Letter::G) => Prefix::Specular,
-            };
+            prefix = prefix.and(sample.event.letter());
             if self.kind == MapKind::Caustic && prefix == Prefix::Diffuse {
                 return rays; // no word (S|G)+ begins so
             }
@@ -138,12 +150,24 @@ impl Walks<'_> {
         }
     }
 
-    fn keeps(&self, prefix: Prefix) -> bool {
-        (self.kind == MapKind::Caustic) == (prefix == Prefix::Specular)
+    /// Whether photons of such a prefix are stored on surfaces.
+    pub(super) fn keeps(&self, prefix: Prefix) -> bool {
+        match self.kind {
+            MapKind::Caustic => prefix == Prefix::Specular,
+            MapKind::Global => prefix != Prefix::Specular,
+            MapKind::Volume => false,
+        }
     }
 
     /// The power after an event of weight `weight`; `None` if the photon was absorbed.
-    fn survive(&self, power: Rgb, weight: Rgb, events: u32, first: f32, u: f32) -> Option<Rgb> {
+    pub(super) fn survive(
+        &self,
+        power: Rgb,
+        weight: Rgb,
+        events: u32,
+        first: f32,
+        u: f32,
+    ) -> Option<Rgb> {
         let scattered = power * weight;
         let (before, after) = (power.max_component(), scattered.max_component());
         let mut survival = match self.roulette {

@@ -23,6 +23,24 @@ pub struct VolumePoint {
     pub wo: Vec3A,
     /// Where scattered light goes.
     pub phase: Phase,
+    /// What of the light is scattered there, per length.
+    pub sigma_s: Rgb,
+    /// Whether the medium is the same around it.
+    pub homogeneous: bool,
+}
+
+impl VolumePoint {
+    /// The place in `medium` at the distance `t` of `ray`.
+    pub fn new(medium: &Medium, ray: &Ray, t: f32) -> Self {
+        let p = ray.at(t);
+        Self {
+            p,
+            wo: -ray.d,
+            phase: medium.phase,
+            sigma_s: medium.sigma_t * medium.albedo * medium.density(p),
+            homogeneous: medium.is_homogeneous(),
+        }
+    }
 }
 
 /// What ends a flight.
@@ -115,11 +133,7 @@ impl Scene {
                 flight.emitted += flight.weight * tracked.emitted;
                 flight.weight *= tracked.weight;
                 if let Some(t) = tracked.t {
-                    flight.arrival = Arrival::Volume(VolumePoint {
-                        p: ray.at(t),
-                        wo: -ray.d,
-                        phase: medium.phase,
-                    });
+                    flight.arrival = Arrival::Volume(VolumePoint::new(medium, &ray, t));
                     (flight.inside, flight.t) = (inside, t);
                     return flight;
                 }

@@ -13,6 +13,7 @@ mod volume;
 mod walk;
 
 pub(super) use direct::turned;
+pub(super) use volume::Gather;
 pub(super) use walk::Walk;
 
 use super::tiled::{SamplerKind, Tiled};
@@ -90,6 +91,15 @@ impl Mode {
 }
 
 impl PathTracer {
+    /// For those whose walks through media end at places of their own.
+    pub(super) fn for_gathering(roulette: u32) -> Self {
+        Self {
+            mode: Mode::Mis,
+            roulette,
+            equiangular: true,
+        }
+    }
+
     /// For those who take its estimates at single vertices.
     pub(super) fn of_mode(mode: Mode) -> Self {
         Self {

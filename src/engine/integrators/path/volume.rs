@@ -28,8 +28,34 @@ use crate::engine::scene::{Arrival, Flight, Scene, Span, VolumePoint};
 /// 4–6, channel and distance 8–9, seeds of the flight 10–11, equiangular 12–15.
 const VERTEX_DIMENSIONS: u32 = 16;
 
+/// What looks for light beside shadow rays, where a walk is to end at its first diffuse event or at
+/// the first place where a medium scatters it.
+pub(in crate::engine::integrators) trait Gather {
+    /// Whether there is such a thing: else the walk goes on.
+    const ENDS: bool;
+    /// Light at a part of a flight within a medium; `walk` stands at the flight's begin.
+    fn along(&mut self, _walk: &Walk, _span: &Span<'_>, _out: &mut SampleRadiance<'_>) {}
+    /// Light that the medium scatters at `point`; the collision is in `walk` already.
+    fn at_volume(&mut self, _walk: &Walk, _point: &VolumePoint, _out: &mut SampleRadiance<'_>) {}
+    /// Light at the diffuse event of a surface.
+    fn at_surface(
+        &mut self,
+        _walk: &Walk,
+        _si: &SurfaceInteraction,
+        _bsdf: &Bsdf,
+        _out: &mut SampleRadiance<'_>,
+    ) {
+    }
+}
+
+/// Path tracing goes on to the end.
+impl Gather for () {
+    const ENDS: bool = false;
+}
+
 /// All that a walk works with.
-pub(super) struct VolumeWalk<'a, 'b, S> {
+pub(super) struct VolumeWalk<'a, 'b, S, G> {
+    gather: &'a mut G,
     tracer: &'a PathTracer,
     cx: &'a Pass<'a>,
     sampler: &'a mut S,
@@ -41,6 +67,8 @@ pub(super) struct VolumeWalk<'a, 'b, S> {
     inside: Inside,
     /// The first of the current vertex's dimensions.
     first: u32,
+    /// It may have no more events.
+    ends: bool,
 }
 
 /// The part of a flight on which light is looked for at one more place: the first in a homogeneous
@@ -88,7 +116,21 @@ impl PathTracer {
         out: &mut SampleRadiance<'_>,
         stats: &mut RenderStats,
     ) {
+        self.gather_in_media(cx, ray, sampler, &mut (), out, stats);
+    }
+
+    /// Walks through media and ends as `gather` says.
+    pub(in crate::engine::integrators) fn gather_in_media<S: Sampler, G: Gather>(
+        &self,
+        cx: &Pass<'_>,
+        ray: Ray,
+        sampler: &mut S,
+        gather: &mut G,
+        out: &mut SampleRadiance<'_>,
+        stats: &mut RenderStats,
+    ) {
         let mut walk = VolumeWalk {
+            gather,
             tracer: self,
             cx,
             sampler,
@@ -98,18 +140,20 @@ impl PathTracer {
             inside: cx.scene.inside(ray.o),
             ray,
             first: CAMERA_DIMENSIONS,
+            ends: false,
         };
         while walk.step().is_some() {}
     }
 }
 
-impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
+impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
     /// A flight and the event at its end; None if the walk ends.
     fn step(&mut self) -> Option<()> {
         // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
         self.first = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * self.walk.depth;
         let plan = self.cx.plan;
         let ends = plan.max_depth.is_some_and(|max| self.walk.depth >= max);
+        self.ends = ends;
         let volume_class = plan.classes.prepend(Letter::V, self.walk.suffix);
         let lights_volumes =
             !ends && self.tracer.sends_shadow_rays(self.cx) && plan.is_wanted(volume_class);
@@ -155,6 +199,11 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
                     let part = part.filter(|p| p.number == flight.spans);
                     self.light_volume(point, volume_class, part.as_ref(), flight.t, &mut shadow);
                 }
+                if G::ENDS {
+                    self.gather.at_volume(&self.walk, point, self.out);
+                    self.count(&shadow);
+                    return None;
+                }
                 self.scatter_in_volume(point, volume_class);
             }
         }
@@ -181,7 +230,12 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
         let looks = lights_volumes && self.tracer.equiangular && self.tracer.mode == Mode::Mis;
         let (mut part, mut number) = (None, 0);
         let beta = self.walk.throughput;
+        let (gather, walk, out) = (&mut *self.gather, &self.walk, &mut *self.out);
+        let gathers = G::ENDS && !self.ends;
         let on_span = |span: &Span<'_>| {
+            if gathers {
+                gather.along(walk, span, out);
+            }
             let fits = span.medium.is_homogeneous() && span.medium.scatters();
             if looks && fits && part.is_none() {
                 part = Some((
@@ -219,7 +273,7 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
 
     /// The light to be sampled, or in mode `kajiya` every one: index, probability of the choice, and
     /// where on it.
-    fn light_choices(&mut self) -> impl Iterator<Item = (u32, f32, Vec2)> + use<'a, S> {
+    fn light_choices(&mut self) -> impl Iterator<Item = (u32, f32, Vec2)> + use<'a, S, G> {
         self.sampler.seek(self.first + 4);
         let (u, choice) = (self.sampler.next_2d(), self.sampler.next_1d());
         let lights = &self.cx.scene.lights;
@@ -254,6 +308,9 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
                 }
             }
         }
+        if G::ENDS && bsdf.has(Event::Diffuse) {
+            self.gather.at_surface(&self.walk, si, &bsdf, self.out);
+        }
         self.sampler.seek(self.first);
         let (direction, event) = (self.sampler.next_2d(), self.sampler.next_1d());
         let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Radiance) else {
@@ -261,6 +318,9 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
             return None;
         };
         let letter = sample.event.letter();
+        if G::ENDS && letter == Letter::D {
+            return None;
+        }
         let suffix = self.cx.plan.classes.prepend(letter, self.walk.suffix);
         self.walk = self.walk.after(si, &sample, suffix, 1.0);
         self.inside = self.cx.scene.beyond(inside, si, sample.wi);
@@ -302,7 +362,11 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
                 return;
             }
             let pdf = bsdf.pdf(event, si.wo, light.wi);
-            let weight = self.light_weight(light, light_pdf, pdf);
+            let weight = if G::ENDS && event == Event::Diffuse {
+                1.0 // a diffuse event never meets a light by itself then
+            } else {
+                self.light_weight(light, light_pdf, pdf)
+            };
             self.out.add(class, incident * f_cos * visible * weight);
         }
     }
@@ -348,7 +412,11 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
     ) -> Rgb {
         let light_pdf = pmf * light.pdf_dir;
         let phase = point.phase.pdf(point.wo, light.wi);
-        let weight = self.light_weight(light, light_pdf, phase);
+        let weight = if G::ENDS {
+            1.0
+        } else {
+            self.light_weight(light, light_pdf, phase)
+        };
         let ray = if light.distance.is_finite() {
             Ray::between(point.p, light.target)
         } else {
@@ -372,11 +440,7 @@ impl<'a, S: Sampler> VolumeWalk<'a, '_, S> {
         };
         let t = distances.sample(u);
         let pdf = distances.pdf(t);
-        let point = VolumePoint {
-            p: part.ray.at(t),
-            wo: -part.ray.d,
-            phase: part.medium.phase,
-        };
+        let point = VolumePoint::new(part.medium, &part.ray, t);
         let Some(light) = lights.get(id).sample_li(point.p, u_light) else {
             return;
         };

@@ -28,6 +28,7 @@ impl MapsKey {
         for (count, wanted) in [
             (&mut have.settings.caustic, want.caustic),
             (&mut have.settings.global, want.global),
+            (&mut have.settings.volume, want.volume),
         ] {
             if wanted == 0 {
                 *count = 0;
@@ -105,7 +106,10 @@ impl PhotonMapper {
         stats: &mut RenderStats,
     ) -> Result<(), Cancelled> {
         // Records do not tell numbers of events apart: with a limit they cannot serve.
-        if self.settings.indirect != Indirect::Cache || cx.plan.max_depth.is_some() {
+        if self.settings.indirect != Indirect::Cache
+            || cx.plan.max_depth.is_some()
+            || cx.plan.features.media
+        {
             self.cache = None;
             return Ok(());
         }
@@ -144,6 +148,10 @@ fn maps_key(settings: &PhotonSettings, cx: &Pass<'_>, index: u64) -> MapsKey {
         settings: MapsSettings {
             caustic: count(caustic, settings.caustic_photons),
             global: count(global, settings.global_photons),
+            volume: count(
+                settings.volume_map && features.volume,
+                settings.volume_photons,
+            ),
             map: settings.map(cx.seed, index),
         },
         layers: expressions.map(|e| e.text().to_owned()).collect(),
@@ -174,7 +182,16 @@ impl Estimator {
     ) -> Self {
         let radius = cx.scene.geometry.bounding_sphere().1 * scale.sqrt();
         Self {
-            settings: Some(*settings),
+            settings: Some(PhotonSettings {
+                // Gather rays know of no media.
+                indirect: if cx.plan.features.media {
+                    Indirect::Direct
+                } else {
+                    settings.indirect
+                },
+                ..*settings
+            }),
+            volume_radius: settings.volume_radius * radius,
             maps,
             cache: None,
             radii: [
@@ -226,8 +243,11 @@ impl Integrator for PhotonMapper {
     fn facts(&self) -> Vec<Fact> {
         let mut facts = Vec::new();
         if let Some((_, maps)) = &self.maps {
-            let named = [("caustic map", &maps.caustic), ("global map", &maps.global)];
-            facts.extend(named.map(|(label, map)| {
+            let mut named = vec![("caustic map", &maps.caustic), ("global map", &maps.global)];
+            if maps.volume.is_some() {
+                named.push(("volume map", &maps.volume));
+            }
+            facts.extend(named.into_iter().map(|(label, map)| {
                 Fact {
                     label,
                     value: map
@@ -258,7 +278,7 @@ fn describe(map: &PhotonMap) -> String {
     let [r, g, b] = counts.power;
     let aim = match map.kind {
         MapKind::Caustic => " toward mirrors, glass and gloss",
-        MapKind::Global => "",
+        MapKind::Global | MapKind::Volume => "",
     };
     format!(
         "{} photons of {} emitted{aim}, power {r:.4} {g:.4} {b:.4} W, {} bytes",

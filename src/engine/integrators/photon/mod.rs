@@ -14,6 +14,7 @@ mod integrator;
 mod noise_bias;
 mod params;
 mod view;
+mod volume;
 mod walk;
 
 pub use gather::GatherRay;
@@ -33,11 +34,17 @@ pub const ENTRY: Entry = Entry {
               Biased: it blurs light over the radius of its photons.",
     params: params::PARAMS,
     missing,
-    media: false,
+    media: true,
     build: |params| Box::new(PhotonMapper::new(PhotonSettings::new(params))),
 };
 
 fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
+    if features.shining_media {
+        return Some(Missing {
+            words: "L.*(D|V).*E".into(),
+            why: "light that a medium emits sends no photons and no shadow rays",
+        });
+    }
     let why = "light of a point, spot or directional source that reaches the eye without a \
                diffuse surface on its way is met by no ray and lands as no photon";
     (features.zero_size_lights && features.specular).then_some(Missing {

@@ -27,6 +27,15 @@ pub struct PhotonSettings {
     pub caustic_photons: usize,
     /// Photons stored in the global map, about.
     pub global_photons: usize,
+    /// Show what photons in media bring.
+    pub volume_map: bool,
+    /// Photons stored in the volume map, about.
+    pub volume_photons: usize,
+    /// Radius of an estimate from the volume map, a share of the scene's radius; the largest at a
+    /// point.
+    pub volume_radius: f32,
+    /// Whether it is read along whole rays, where the medium is homogeneous.
+    pub volume_beams: bool,
     /// Photons of an estimate.
     pub nearest: usize,
     /// Largest radius of an estimate from the caustic map, a share of the scene's radius.
@@ -65,6 +74,10 @@ impl PhotonSettings {
             global_map: params.switch("global-map"),
             caustic_photons: count("caustic-photons"),
             global_photons: count("global-photons"),
+            volume_map: params.switch("volume-map"),
+            volume_photons: count("volume-photons"),
+            volume_radius: params.number("volume-radius") as f32,
+            volume_beams: params.choice("volume-estimate") == "beam",
             nearest: count("nearest"),
             caustic_radius: params.number("caustic-radius") as f32,
             global_radius: params.number("global-radius") as f32,
@@ -131,6 +144,35 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         default: "on",
         unit: "",
         doc: "Off blackens the indirect component.",
+    },
+    ParamSpec {
+        name: "volume-map",
+        kind: ParamKind::Switch,
+        default: "on",
+        unit: "",
+        doc: "Off blackens what photons in media bring; the map is then left unbuilt.",
+    },
+    ParamSpec {
+        name: "volume-estimate",
+        kind: ParamKind::Choice(&["beam", "point"]),
+        default: "beam",
+        unit: "",
+        doc: "How the volume map is read: along whole rays in homogeneous media, or at the places \
+              where rays are scattered.",
+    },
+    ParamSpec {
+        name: "volume-photons",
+        kind: ParamKind::Integer(1, MAX_PHOTONS),
+        default: "200000",
+        unit: "photons",
+        doc: "Photons stored in the volume map, about.",
+    },
+    ParamSpec {
+        name: "volume-radius",
+        kind: ParamKind::Number(1e-6, 10.0),
+        default: "0.01",
+        unit: "of the scene's radius",
+        doc: "Radius of an estimate along a ray, and the largest at a point.",
     },
     ParamSpec {
         name: "caustic-photons",

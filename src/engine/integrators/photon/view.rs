@@ -44,6 +44,7 @@ impl PhotonView {
         match kind {
             MapKind::Caustic => self.0.maps.caustic.as_ref(),
             MapKind::Global => self.0.maps.global.as_ref(),
+            MapKind::Volume => self.0.maps.volume.as_ref(),
         }
     }
 
@@ -63,6 +64,7 @@ impl PhotonView {
         let max_radius = match kind {
             MapKind::Caustic => self.0.radii[0],
             MapKind::Global => self.0.radii[1],
+            MapKind::Volume => return None, // it tells nothing of surfaces
         };
         let disc = Disc::new(si, max_radius, true);
         let (radius, photons) = map.inspect(&disc, self.0.nearest, settings.kernel);
@@ -109,6 +111,7 @@ impl std::fmt::Debug for PhotonView {
         f.debug_struct("PhotonView")
             .field("caustic", &count(&self.0.maps.caustic))
             .field("global", &count(&self.0.maps.global))
+            .field("volume", &count(&self.0.maps.volume))
             .finish()
     }
 }

@@ -26,7 +26,7 @@ const GATHER_DIMENSIONS: u32 = 1 << 20;
 /// Survival of walks that lost nothing: with 1 a walk between perfect mirrors would not end.
 pub(super) const MAX_SURVIVAL: f32 = 0.98;
 /// Events after which roulette may end a walk.
-const ROULETTE_EVENTS: u32 = 2;
+pub(super) const ROULETTE_EVENTS: u32 = 2;
 
 /// The estimator behind the entry; it is made anew whenever maps or settings change.
 #[derive(Clone, Default)]
@@ -39,6 +39,8 @@ pub struct Estimator {
     pub cache: Option<Arc<IrradianceCache>>,
     /// Largest radii in scene units, of the caustic and the global map.
     pub radii: [f32; 2],
+    /// Radius in scene units of estimates in media.
+    pub volume_radius: f32,
     /// Photons of an estimate.
     pub nearest: usize,
 }
@@ -98,11 +100,12 @@ impl RayIntegrator for Estimator {
         out: &mut SampleRadiance<'_>,
         stats: &mut RenderStats,
     ) {
+        if cx.plan.features.media {
+            self.radiance_in_media(cx, ray, sampler, out, stats);
+            return;
+        }
         let mut walk = Walk::new();
-        let mut scratch = Scratch {
-            nearest: Nearest::new(self.nearest),
-            sums: ClassSums::new(),
-        };
+        let mut scratch = self.scratch();
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let first = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * walk.depth;
@@ -170,7 +173,7 @@ impl Estimator {
     /// as the settings say. The switches blacken what is seen directly, and nothing in mirrors:
     /// that belongs to another component.
     #[expect(clippy::too_many_arguments, reason = "see add_direct")]
-    fn add_photons(
+    pub(super) fn add_photons(
         &self,
         cx: &Pass<'_>,
         walk: &Walk,
