@@ -437,12 +437,12 @@ fn modes_and_equiangular_places_agree_and_layers_add_up() {
     );
     for frame in &mis {
         for (i, whole) in frame.layers[0].pixels.iter().enumerate() {
-            for c in 0..3 {
+            for (c, whole) in whole.iter().enumerate() {
                 let of = |l: usize| frame.layers[l].pixels[i][c];
                 let (parts, last) = (of(1) + of(2) + of(3) + of(4), of(5) + of(6) + of(8));
-                let scale = whole[c].max(0.1);
-                assert!((parts - whole[c]).abs() < 1e-4 * scale);
-                assert!((last - whole[c]).abs() < 1e-4 * scale);
+                let scale = whole.max(0.1);
+                assert!((parts - whole).abs() < 1e-4 * scale);
+                assert!((last - whole).abs() < 1e-4 * scale);
             }
         }
     }

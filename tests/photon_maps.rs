@@ -39,7 +39,7 @@ fn settings(photons: usize, index: u64) -> MapSettings {
 fn build(scene: &Scene, kind: MapKind, settings: &MapSettings) -> PhotonMap {
     let emission = match kind {
         MapKind::Caustic => Emission::aimed(scene, ProjectionMap::new(scene)).expect("mirrors"),
-        MapKind::Global => Emission::Everywhere,
+        MapKind::Global | MapKind::Volume => Emission::Everywhere,
     };
     let classes = PathClasses::components();
     let never = || Ok::<(), Infallible>(());
@@ -654,7 +654,7 @@ fn shown_paths_are_those_of_the_map() {
         let map = build(&scene, kind, &settings);
         let emission = match kind {
             MapKind::Caustic => Emission::aimed(&scene, ProjectionMap::new(&scene)).expect("glass"),
-            MapKind::Global => Emission::Everywhere,
+            MapKind::Global | MapKind::Volume => Emission::Everywhere,
         };
         let all = 0..map.counts.emitted;
         let paths = map.paths(&scene, &classes, &emission, &settings, all);

@@ -116,6 +116,58 @@ const FAULTS: [(&str, &str, &str); 40] = [
      r#"mesh: the field "file" is missing; it is the name of an OBJ file"#),
 ];
 
+/// The same for media: what stands in place of the line `format = 1`, and of `radius = 1`.
+#[rustfmt::skip]
+const MEDIA_FAULTS: [(&str, &str, &str); 25] = [
+    (r#"medium = { type = "fog", region = "everywhere" } #"#, "",
+     r#"medium: there is no type "fog"; there are homogeneous, grid"#),
+    (r#"medium = { type = "homogenous", region = "everywhere" } #"#, "",
+     r#"there is no type "homogenous"; did you mean "homogeneous"?"#),
+    (r#"medium = { type = "homogeneous", region = "everywhere", albedo = 1 } #"#, "",
+     r#"medium: the field "sigma_t" is missing; it is extinction per length"#),
+    (r#"medium = { type = "homogeneous", region = "everywhere", sigma_t = -1, albedo = 1 } #"#, "",
+     "medium: sigma_t is to be at least 0"),
+    (r#"medium = { type = "homogeneous", region = "everywhere", sigma_t = 1 } #"#, "",
+     r#"medium: the field "albedo" is missing"#),
+    (r#"medium = { type = "homogeneous", region = "everywhere", sigma_t = 1, albedo = 1.5 } #"#, "",
+     "medium: albedo is at most 1, not 1.5; more would make light out of nothing"),
+    (r#"medium = { type = "homogeneous", sigma_t = 1, albedo = 1 } #"#, "",
+     r#"medium: the field "region" is missing; it is "everywhere" or a table with min and max"#),
+    (r#"medium = { type = "homogeneous", region = "nowhere", sigma_t = 1, albedo = 1 } #"#, "",
+     r#"medium: region is to be "everywhere" or a table with min and max, not "nowhere""#),
+    (r#"medium = { type = "homogeneous", region = { min = [0, 0, 0], max = [1, 0, 1] }, sigma_t = 1, albedo = 1 } #"#, "",
+     "medium, region: max is to lie above min along every axis"),
+    (r#"medium = { type = "homogeneous", region = "everywhere", sigma_t = 1, albedo = 1, phase = { type = "hg", g = 1 } } #"#, "",
+     "medium, phase: g is to be a mean cosine between -1 and 1, not 1"),
+    (r#"medium = { type = "homogeneous", region = "everywhere", sigma_t = 1, albedo = 1, phase = { type = "mie" } } #"#, "",
+     r#"medium, phase: there is no type "mie"; there are isotropic, hg, rayleigh"#),
+    (r#"medium = { type = "homogeneous", region = "everywhere", sigma_t = 1, albedo = 1, density = 2 } #"#, "",
+     r#"medium: there is no field "density""#),
+    (r#"medium = { type = "grid", region = "everywhere", sigma_t_scale = 1, albedo = 1 } #"#, "",
+     "medium: a grid fills a box: its region is a table with min and max"),
+    (r#"medium = { type = "grid", region = { min = [0, 0, 0], max = [1, 1, 1] }, file = "none.txt", sigma_t_scale = 1, albedo = 1 } #"#, "",
+     "medium: none.txt: there is no such file"),
+    (r#"medium = { type = "grid", region = { min = [0, 0, 0], max = [1, 1, 1] }, file = "few.txt", sigma_t_scale = 1, albedo = 1 } #"#, "",
+     "medium: few.txt: it holds 3 numbers, not 2 · 2 · 2"),
+    (r#"medium = { type = "grid", region = { min = [0, 0, 0], max = [1, 1, 1] }, file = "few.txt", sigma_t_scale = 1, albedo = 1, majorant_scale = 0 } #"#, "",
+     "few.txt: it holds 3 numbers"),
+    (r#"medium = "fog" #"#, "",
+     r#"medium "fog" is not defined; media are defined in the table media"#),
+    (r#"media.vacuum = { type = "homogeneous", sigma_t = 1, albedo = 1 } #"#, "",
+     r#""vacuum" is the medium that is nothing; choose another name"#),
+    (r#"media = [1] #"#, "", "media is to be a table of fields, not a list"),
+    (r#"media.fog = { type = "homogeneous", sigma_t = 1, albedo = 1 }"#, "radius = 1\ninterior = \"fig\" #",
+     r#"sphere: medium "fig" is not defined; did you mean "fog"?"#),
+    ("", "radius = 1\ninterior = 7 #", "sphere: interior is to be a text"),
+    ("", "radius = 1\npriority = 2 #",
+     "sphere: priority decides between interiors that overlap; give an interior, too"),
+    ("", "radius = 1\ninterior = \"vacuum\"\npriority = 0.5 #",
+     "sphere: priority is to be a whole number from -1000000 to 1000000, not 0.5"),
+    ("frames = 0 #", "", "scene: frames is to be a whole number of frames from 1 to 1000000, not 0"),
+    (r#"medium = { type = "homogeneous", region = "everywhere", sigma_t = [0, 1, 1], albedo = 0, emission = 1 }"#, "",
+     "it is everywhere and emits without extinction, which would be endlessly bright"),
+];
+
 /// Whole files: name, text, line, and what the sentence says.
 #[rustfmt::skip]
 const FILES: [(&str, &str, Option<usize>, &str); 14] = [
@@ -151,6 +203,72 @@ fn expect(said: &str, file: &str, line: Option<usize>, message: &str) {
     });
     assert!(said.starts_with(&place), "not at {place}\n{said}");
     assert!(said.contains(message), "no {message:?} in\n{said}");
+}
+
+#[test]
+fn one_fault_of_a_medium_is_one_sentence_at_its_line() {
+    let folder = folder();
+    let path = folder.path().join("scene.toml");
+    fs::write(folder.path().join("few.txt"), "2 2 2\n1 2 3\n").expect("written");
+    for (top, sphere, message) in MEDIA_FAULTS {
+        let mut text = GOOD.replacen("format = 1", top, 1);
+        if !sphere.is_empty() {
+            text = text.replacen("radius = 1", sphere, 1);
+        }
+        fs::write(&path, &text).expect("written");
+        let said = refusal(folder.path(), "scene.toml");
+        match text.lines().position(|l| l.ends_with('#')) {
+            Some(line) => expect(&said, "scene.toml", Some(line + 1), message),
+            None => assert!(said.contains(message), "no {message:?} in\n{said}"),
+        }
+    }
+    // A boundary that bounds nothing.
+    fs::write(
+        &path,
+        GOOD.replacen(r#"material = "white""#, r#"material = "none""#, 1),
+    )
+    .expect("written");
+    let said = refusal(folder.path(), "scene.toml");
+    assert!(
+        said.contains("a medium's invisible boundary; give an interior, too"),
+        "{said}"
+    );
+    // Density files that are wrong, at their own lines.
+    let scene = GOOD.replacen(
+        "format = 1",
+        r#"medium = { type = "grid", region = { min = [0, 0, 0], max = [1, 1, 1] }, file = "d.txt", sigma_t_scale = 1, albedo = 1 }"#,
+        1,
+    );
+    fs::write(&path, scene).expect("written");
+    for (density, line, message) in [
+        (
+            "",
+            1,
+            "the first line is to be `nx ny nz`, three whole numbers above 0",
+        ),
+        ("2 0 2\n", 1, "the first line is to be"),
+        (
+            "1 1 1\nx\n",
+            2,
+            "a density is a finite number of at least 0, not \"x\"",
+        ),
+        ("1 1 1\n\n-1\n", 3, "not \"-1\""),
+        ("1 1 1\nnan\n", 2, "not \"nan\""),
+        (
+            "1 1 1\n1\n2 3\n",
+            3,
+            "there are more numbers than 1 · 1 · 1 voxels",
+        ),
+        (
+            "99999 99999 99999\n",
+            1,
+            "99999 · 99999 · 99999 voxels are more than 2^30",
+        ),
+    ] {
+        fs::write(folder.path().join("d.txt"), density).expect("written");
+        let said = refusal(folder.path(), "scene.toml");
+        expect(&said, "d.txt", Some(line), message);
+    }
 }
 
 #[test]

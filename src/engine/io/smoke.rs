@@ -161,7 +161,7 @@ mod tests {
         let filled = a.iter().filter(|d| **d > 0.0).count() as f32 / a.len() as f32;
         assert!((0.01..0.5).contains(&filled), "{filled}");
         // None at the sides, where the cube ends.
-        let side = |i: usize| i % SIZE == 0 || i % SIZE == SIZE - 1;
+        let side = |i: usize| [0, SIZE - 1].contains(&(i % SIZE));
         assert!(a.iter().enumerate().all(|(i, d)| !side(i) || *d == 0.0));
         assert_eq!(density("smoke-x.txt"), None);
     }
