@@ -137,7 +137,11 @@ fn grid(size: [usize; 3], majorant_scale: f32, at: impl Fn(usize) -> f32) -> Gri
 
 fn rough(i: usize) -> f32 {
     let x = (i * 7919 % 101) as f32 / 100.0;
-    if i.is_multiple_of(5) { 0.0 } else { 2.0 * x * x }
+    if i.is_multiple_of(5) {
+        0.0
+    } else {
+        2.0 * x * x
+    }
 }
 
 /// A ray that is slanted, and where it crosses the unit cube.
