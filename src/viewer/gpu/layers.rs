@@ -29,6 +29,11 @@ impl Layers {
         }
     }
 
+    /// Memory of the buffers.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.len() as u64 * self.capacity
+    }
+
     /// The buffers of `layers`, the others stood in for by the first buffer.
     pub fn buffers(&self, layers: &[usize]) -> Option<[&Buffer; SLOTS]> {
         let first = self.buffers.first()?;

@@ -104,6 +104,11 @@ impl Resources {
         }
     }
 
+    /// Memory on the graphics card: layers and the picture made of them.
+    pub fn bytes(&self) -> u64 {
+        self.layers.bytes() + self.canvas.bytes()
+    }
+
     /// Draws the canvas if anything about it has changed.
     pub(super) fn prepare(
         &mut self,
