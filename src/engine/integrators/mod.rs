@@ -56,6 +56,11 @@ pub trait Integrator: Send + Sync {
         Vec::new()
     }
 
+    /// Memory it holds from pass to pass, in bytes, as far as it grows with picture or scene.
+    fn memory_bytes(&self) -> usize {
+        0
+    }
+
     /// Its photons, for display.
     fn photons(&self) -> Option<PhotonView> {
         None
