@@ -27,6 +27,7 @@ pub mod picking;
 pub mod preferences;
 mod rendering;
 mod saver;
+mod shown;
 pub mod source;
 pub mod state;
 pub mod thumbnails;

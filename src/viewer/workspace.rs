@@ -99,6 +99,8 @@ pub struct Workspace {
     pub area: UVec2,
     /// Most pixels the graphics card holds.
     pub max_pixels: u64,
+    /// Bytes of the picture on the graphics card.
+    pub gpu_bytes: u64,
     /// The hand is on the camera.
     pub navigating: bool,
     /// The button that moves the camera.
@@ -141,6 +143,7 @@ impl Workspace {
             requests: Vec::new(),
             area: UVec2::ZERO,
             max_pixels: u64::MAX,
+            gpu_bytes: 0,
             navigating: false,
             hold: None,
             paused: false,

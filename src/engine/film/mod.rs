@@ -13,7 +13,7 @@ pub mod tiles;
 pub mod tonemap;
 
 pub use accumulator::Film;
-pub use frame::{Frame, FrameLayer};
+pub use frame::{Frame, FrameLayer, Memory};
 pub use pass_buffer::PassBuffer;
 pub use sample::SampleRadiance;
 pub use splats::{SplatBuffer, SplatList};

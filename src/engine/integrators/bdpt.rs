@@ -387,4 +387,9 @@ impl Integrator for Bdpt {
         self.splats = Some(splats);
         Ok(stats)
     }
+
+    fn memory_bytes(&self) -> usize {
+        self.samples.as_ref().map_or(0, PassBuffer::bytes)
+            + self.splats.as_ref().map_or(0, SplatBuffer::bytes)
+    }
 }

@@ -82,6 +82,11 @@ impl Integrator for Sppm {
         Ok(stats)
     }
 
+    fn memory_bytes(&self) -> usize {
+        let grid = self.tiled.estimator().grid.as_ref();
+        self.tiled.buffer_bytes() + grid.map_or(0, PhotonGrid::bytes)
+    }
+
     fn facts(&self) -> Vec<Fact> {
         let grid = self.tiled.estimator().grid.as_ref();
         grid.map(PhotonGrid::fact).into_iter().collect()

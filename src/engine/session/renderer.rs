@@ -8,7 +8,7 @@ use glam::UVec2;
 use super::clock::RenderClock;
 use super::job::{RenderJob, Settings};
 use crate::engine::camera::Camera;
-use crate::engine::film::{Film, Frame};
+use crate::engine::film::{Film, Frame, Memory};
 use crate::engine::integrators::{Cancel, Cancelled, Integrator, Params, Pass, RenderStats};
 use crate::engine::path::ExpressionError;
 use crate::engine::plan::RenderPlan;
@@ -186,6 +186,16 @@ impl Renderer {
         frame.t_wall = self.clock.wall();
         frame.t_cpu = self.clock.cpu();
         frame.stats = self.stats;
+        if coarse.is_none() {
+            film.resolve_differences(&mut frame.differences);
+        } else {
+            frame.differences.clear();
+        }
+        frame.memory = Memory {
+            film: self.film.bytes(),
+            integrator: self.integrator.memory_bytes(),
+        };
+        frame.threads = rayon::current_num_threads();
         frame.relative_error = if coarse.is_none() {
             film.relative_error()
         } else {

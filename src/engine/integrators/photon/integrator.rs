@@ -223,6 +223,15 @@ impl Integrator for PhotonMapper {
         !built || self.settings.indirect != Indirect::Direct
     }
 
+    fn memory_bytes(&self) -> usize {
+        let maps = self
+            .maps
+            .as_ref()
+            .map_or(0, |(_, maps)| maps.memory_bytes());
+        let cache = self.cache().map_or(0, IrradianceCache::memory_bytes);
+        self.tiled.buffer_bytes() + maps + cache
+    }
+
     fn facts(&self) -> Vec<Fact> {
         let mut facts = Vec::new();
         if let Some((_, maps)) = &self.maps {
