@@ -18,6 +18,7 @@ use super::model::Model;
 use super::navigation;
 use super::notices::Notices;
 use super::opening::Opening;
+use super::photons::Photons;
 use super::preferences::Preferences;
 use super::source::SceneSource;
 use super::thumbnails::Thumbnail;
@@ -117,6 +118,8 @@ pub struct Workspace {
     pub textures: BTreeMap<&'static str, egui::TextureHandle>,
     /// The values under the cursor are shown.
     pub inspector: bool,
+    /// What is shown of photon maps.
+    pub photons: Photons,
     /// A file is being chosen.
     pub browser: Option<Browser>,
     /// Hash of the scene file as it was read.
@@ -150,6 +153,7 @@ impl Workspace {
             thumbnails: Vec::new(),
             textures: BTreeMap::new(),
             inspector: false,
+            photons: Photons::default(),
             browser: None,
             scene_hash: String::new(),
             preferences: Preferences::default(),
@@ -188,6 +192,7 @@ impl Workspace {
         }
         if !again {
             self.placement = Placement::default();
+            self.photons.found = None;
             self.history = History::new(&self.model);
         }
     }

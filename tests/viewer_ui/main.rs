@@ -5,3 +5,4 @@ mod controls;
 mod desk;
 mod files;
 mod hand;
+mod photons;

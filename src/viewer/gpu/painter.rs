@@ -9,6 +9,7 @@ use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
 use super::picture::Resources;
+use super::points::PointResources;
 
 /// Prepares drawing in `window`; `lost` is called when the device is gone.
 ///
@@ -32,7 +33,11 @@ pub fn create(
         }
     });
     let resources = Resources::new(&state.device, state.target_format);
-    state.renderer.write().callback_resources.insert(resources);
+    let points = PointResources::new(&state.device, state.target_format);
+    let mut renderer = state.renderer.write();
+    renderer.callback_resources.insert(resources);
+    renderer.callback_resources.insert(points);
+    drop(renderer);
     Ok(painter)
 }
 

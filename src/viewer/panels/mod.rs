@@ -12,6 +12,8 @@ mod inspector;
 mod notices;
 mod output;
 mod params;
+mod photon_lines;
+mod photons;
 mod picture;
 mod pixel_values;
 mod plan;
@@ -32,9 +34,10 @@ pub use style::apply as apply_style;
 type Section = (&'static str, bool, fn(&mut Ui, &mut Workspace));
 
 /// The panel's sections from top to bottom.
-const SECTIONS: [Section; 6] = [
+const SECTIONS: [Section; 7] = [
     ("Algorithm", true, algorithm::show),
     ("Components", true, components::show),
+    ("Photons", false, photons::show),
     ("Display", true, display::show),
     ("Camera", false, camera::show),
     ("Save", true, output::show),
@@ -72,6 +75,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             .show(ui, |ui| side(ui, workspace));
         workspace.preferences.panel_width = panel.response.rect.width();
     }
+    photons::keep_up(ui, workspace);
     CentralPanel::no_frame().show(ui, |ui| picture::show(ui, workspace));
     notices::show(ui, workspace);
     help::show(ui, workspace);

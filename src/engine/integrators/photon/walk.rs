@@ -41,6 +41,8 @@ pub struct Estimator {
     pub radii: [f32; 2],
     /// Photons of an estimate.
     pub nearest: usize,
+    /// Seed of the photons, and which of several independent maps they are.
+    pub numbers: (u64, u64),
 }
 
 /// The state of a walk between two vertices.
