@@ -17,6 +17,8 @@ use crate::engine::photon::{MapKind, Photon, PhotonMaps, PhotonPath};
 
 /// Columns of the grid of depths that hide photons: one ray each, at every change of view.
 const COLUMNS: u32 = 240;
+/// Where no surface is: shaders need not know infinity.
+const FAR: f32 = 1e30;
 /// Letters of the longest word that names a class.
 const LONGEST_NAME: usize = 4;
 /// Colours of classes: those of Okabe and Ito (2008), which colour-blind people tell apart.
@@ -414,7 +416,7 @@ fn refresh_depths(workspace: &mut Workspace) {
         let film = (Vec2::new(x as f32, y as f32) + 0.5) * aim;
         let ray = view.generate_ray(film, Vec2::splat(0.5));
         let si = scene.intersect(&ray, || 0.0);
-        si.map_or(f32::INFINITY, |si| si.t * ray.d.dot(view.forward()))
+        si.map_or(FAR, |si| si.t * ray.d.dot(view.forward()))
     };
     let depths = (0..rows).flat_map(|y| (0..COLUMNS).map(move |x| (x, y)));
     workspace.photons.depths = Arc::new(Depths {

@@ -37,7 +37,7 @@ fn photon_desk() -> Desk {
     let specs = settings.integrator.params;
     for (name, value) in [
         ("caustic-photons", "3000"),
-        ("global-photons", "5000"),
+        ("global-photons", "40000"),
         ("gather-rays", "40"),
         ("indirect", "cache"),
     ] {
@@ -88,9 +88,9 @@ fn the_maps_are_drawn_alone_and_together() {
     );
     assert!(caustic > 1000 && global > 1000);
     for (label, drawn, count) in [
-        ("Caustic map", Drawn::Caustic, caustic),
-        ("Global map", Drawn::Global, global),
-        ("Both maps", Drawn::Both, caustic + global),
+        ("Of the caustic map", Drawn::Caustic, caustic),
+        ("Of the global map", Drawn::Global, global),
+        ("Of both maps", Drawn::Both, caustic + global),
     ] {
         desk.get_by_label(label).click();
         desk.run();
@@ -114,7 +114,7 @@ fn the_maps_are_drawn_alone_and_together() {
 #[test]
 fn colours_tell_direction_and_class() {
     let mut desk = photon_desk();
-    desk.get_by_label("Both maps").click();
+    desk.get_by_label("Of both maps").click();
     desk.run();
     for (label, by) in [("direction", ColorBy::Direction), ("class", ColorBy::Class)] {
         desk.get_by_label("Photon colour").click();
@@ -139,7 +139,7 @@ fn colours_tell_direction_and_class() {
 #[test]
 fn photons_land_one_by_one() {
     let mut desk = photon_desk();
-    desk.get_by_label("Global map").click();
+    desk.get_by_label("Of the global map").click();
     desk.run();
     desk.get_by_label("Let them land").click();
     desk.run_steps(4);
@@ -162,7 +162,7 @@ fn a_click_finds_what_the_estimate_is_made_of() {
     desk.run();
     // Upon the floor, before the spheres.
     let picture = desk.get_by_label("Picture").rect();
-    let at = picture.center() + egui::vec2(0.0, 0.42 * picture.width());
+    let at = picture.center() + egui::vec2(0.0, 0.42 * picture.height());
     desk.drag_at(at);
     desk.drop_at(at);
     desk.run();
@@ -186,7 +186,7 @@ fn a_click_finds_what_the_estimate_is_made_of() {
     let line = format!("49 of 50 photons within {:.4}", query.radius);
     assert!(desk.query_by_label(&line).is_some(), "{line}");
     // Other maps, other answers: what was asked is asked again.
-    desk.get_by_label("Splitting planes")
+    desk.get_by_role_and_label(egui::Role::Slider, "Splitting planes")
         .set_value_accesskit(4.0);
     desk.get_by_label("Ways").set_value_accesskit(12.0);
     desk.run();

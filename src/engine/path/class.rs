@@ -230,7 +230,7 @@ impl PathClasses {
         for _ in 0..longest {
             let last = named.len();
             for i in first..last {
-                for letter in [Letter::D, Letter::G, Letter::S] {
+                for letter in [Letter::D, Letter::S, Letter::G] {
                     let class = self.append(named[i].0, letter);
                     if named.iter().all(|(known, _)| *known != class) {
                         named.push((class, format!("{}{letter:?}", named[i].1)));

@@ -323,7 +323,7 @@ fn points_lie_where_the_camera_sees_them_and_surfaces_hide_them() {
     assert!(places(&first, colors[1]).is_empty() && !places(&first, colors[0]).is_empty());
     let wall = Depths {
         size: [2, 1],
-        depths: vec![3.0, f32::INFINITY],
+        depths: vec![1.0, 1e30],
     };
     let behind = show(1.0, 4, wall);
     assert!(places(&behind, colors[0]).is_empty() && !places(&behind, colors[1]).is_empty());

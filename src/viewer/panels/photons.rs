@@ -79,11 +79,11 @@ fn points(ui: &mut Ui, photons: &mut Photons) {
             (Drawn::None, "No photons", "Draw no photons."),
             (
                 Drawn::Caustic,
-                "Caustic map",
+                "Of the caustic map",
                 "Photons that mirrors, glass or gloss threw onto diffuse surfaces.",
             ),
-            (Drawn::Global, "Global map", "All other photons."),
-            (Drawn::Both, "Both maps", "The photons of both maps."),
+            (Drawn::Global, "Of the global map", "All other photons."),
+            (Drawn::Both, "Of both maps", "Those of both maps."),
         ] {
             ui.selectable_value(&mut choice.drawn, drawn, label)
                 .on_hover_text(doc);
