@@ -217,15 +217,16 @@ impl Photons {
         if self.made_of.as_ref() == Some(&key) {
             return;
         }
-        let kinds = key.drawn.kinds().iter();
-        let photons: Vec<Photon> = kinds
-            .filter_map(|kind| view.map(*kind))
-            .flat_map(|map| map.photons())
-            .collect();
+        // With the mean power of their map, beside which they are bright or faint.
+        let mut photons: Vec<(Photon, f32)> = Vec::new();
+        for map in key.drawn.kinds().iter().filter_map(|kind| view.map(*kind)) {
+            let mean = map.counts.power.iter().sum::<f64>() / (3 * map.len().max(1)) as f64;
+            photons.extend(map.photons().map(|photon| (photon, mean as f32)));
+        }
         self.legend.clear();
         let palette = Palette::new(classes, &photons);
         let points = mixed(photons.len()).map(|i| Point {
-            p: photons[i].p.to_array(),
+            p: photons[i].0.p.to_array(),
             color: palette.color(key.color, &photons[i]),
         });
         self.points.list = Arc::new(points.collect());
@@ -255,19 +256,16 @@ fn mixed(n: usize) -> impl Iterator<Item = usize> {
 
 /// Colours of photons.
 struct Palette {
-    /// Brightness 1.
-    mean: f32,
     /// Colour by class number.
     classes: Vec<(ClassId, [u8; 3])>,
     legend: Vec<(String, [u8; 3])>,
 }
 
 impl Palette {
-    fn new(classes: &PathClasses, photons: &[Photon]) -> Self {
-        let sum: f64 = photons.iter().map(|p| f64::from(p.power.mean())).sum();
+    fn new(classes: &PathClasses, photons: &[(Photon, f32)]) -> Self {
         let (mut found, mut legend) = (Vec::new(), Vec::new());
         for (class, word) in classes.shortest_words(LONGEST_NAME) {
-            if !photons.iter().any(|p| p.class == class) {
+            if !photons.iter().any(|(p, _)| p.class == class) {
                 continue;
             }
             let color = PALETTE[found.len() % PALETTE.len()];
@@ -275,18 +273,17 @@ impl Palette {
             legend.push((format!("L{word}…"), color));
         }
         Self {
-            mean: (sum / photons.len().max(1) as f64) as f32,
             classes: found,
             legend,
         }
     }
 
-    fn color(&self, by: ColorBy, photon: &Photon) -> [u8; 4] {
+    fn color(&self, by: ColorBy, (photon, mean): &(Photon, f32)) -> [u8; 4] {
         let [r, g, b] = match by {
             ColorBy::Power => {
                 // Hue by the power, brightness by its share of the mean: the mean shows at 71 %.
                 let most = photon.power.max_component().max(f32::MIN_POSITIVE);
-                let bright = (most / (most + self.mean)).sqrt();
+                let bright = (most / (most + mean)).sqrt();
                 photon
                     .power
                     .to_array()

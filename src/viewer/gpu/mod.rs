@@ -12,4 +12,4 @@ mod tests;
 
 pub use layout::{PixelRect, Placement, picture_point, place};
 pub use picture::{PictureCallback, Resources};
-pub use points::{Depths, Point, Points, PointsCallback};
+pub use points::{Depths, Point, Points, PointsLayer};

@@ -9,7 +9,6 @@ use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
 use super::picture::Resources;
-use super::points::PointResources;
 
 /// Prepares drawing in `window`; `lost` is called when the device is gone.
 ///
@@ -33,11 +32,7 @@ pub fn create(
         }
     });
     let resources = Resources::new(&state.device, state.target_format);
-    let points = PointResources::new(&state.device, state.target_format);
-    let mut renderer = state.renderer.write();
-    renderer.callback_resources.insert(resources);
-    renderer.callback_resources.insert(points);
-    drop(renderer);
+    state.renderer.write().callback_resources.insert(resources);
     Ok(painter)
 }
 

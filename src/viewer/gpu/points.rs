@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use egui_wgpu::wgpu;
-use egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use glam::Vec2;
 
 use super::pipelines::module;
@@ -37,8 +36,9 @@ pub struct Depths {
     pub depths: Vec<f32>,
 }
 
-/// Points to be drawn: made anew for every repaint.
-pub struct PointsCallback {
+/// Points over the picture: made anew for every repaint.
+#[derive(Clone)]
+pub struct PointsLayer {
     /// All points.
     pub points: Points,
     /// How many of them are shown.
@@ -47,10 +47,10 @@ pub struct PointsCallback {
     pub projection: Projection,
     /// Left top corner of the picture in its area, and pixels of the target per pixel of it.
     pub place: (Vec2, f32),
-    /// Pixels of the area.
-    pub area: Vec2,
     /// Side of a point in pixels of the target.
-    pub side: f32,
+    pub side: u32,
+    /// They stand on black.
+    pub alone: bool,
     /// What hides them.
     pub depths: Arc<Depths>,
 }
@@ -90,30 +90,16 @@ pub struct PointResources {
     large: bool,
 }
 
-impl CallbackTrait for PointsCallback {
-    fn prepare(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        _: &ScreenDescriptor,
-        _: &mut wgpu::CommandEncoder,
-        resources: &mut CallbackResources,
-    ) -> Vec<wgpu::CommandBuffer> {
-        if let Some(resources) = resources.get_mut::<PointResources>() {
-            resources.prepare(device, queue, self);
-        }
-        Vec::new()
-    }
+/// All that a drawing of points depends on.
+pub(super) type PointsKey = (u64, usize, Projection, (Vec2, f32), bool, u32, usize);
 
-    fn paint(
-        &self,
-        _: egui::PaintCallbackInfo,
-        pass: &mut wgpu::RenderPass<'static>,
-        resources: &CallbackResources,
-    ) {
-        if let Some(resources) = resources.get::<PointResources>() {
-            resources.paint(pass);
-        }
+impl PointsLayer {
+    /// Equal keys make equal drawings.
+    pub(super) fn key(&self) -> PointsKey {
+        let depths = Arc::as_ptr(&self.depths) as usize;
+        let (number, side) = (self.points.number, self.side);
+        let (view, place) = (self.projection, self.place);
+        (number, self.count, view, place, self.alone, side, depths)
     }
 }
 
@@ -149,7 +135,8 @@ impl PointResources {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        c: &PointsCallback,
+        c: &PointsLayer,
+        area: Vec2,
     ) {
         if self.held != Some(c.points.number) {
             self.held = Some(c.points.number);
@@ -180,15 +167,15 @@ impl PointResources {
             forward: four(p.forward),
             film: p.size.to_array(),
             corner: c.place.0.to_array(),
-            area: c.area.to_array(),
+            area: area.to_array(),
             scale: c.place.1,
-            side: c.side.max(1.0),
+            side: c.side.max(1) as f32,
             grid: c.depths.size,
             padding: [0; 2],
         };
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.count = c.count.min(c.points.list.len()) as u32;
-        self.large = c.side > 1.0;
+        self.large = c.side > 1;
     }
 
     /// Draws them; the viewport is the area.

@@ -7,7 +7,7 @@ use glam::{UVec2, Vec2};
 
 use super::layout::{PixelRect, Placement};
 use super::picture::{PictureCallback, Resources};
-use super::points::{Depths, Point, PointResources, Points, PointsCallback};
+use super::points::{Depths, Point, PointResources, Points, PointsLayer};
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
 use crate::engine::film::{Frame, FrameLayer, ToneMap};
 use crate::engine::plan::RenderPlan;
@@ -55,6 +55,7 @@ fn shown(
         number: 1,
         display,
         placement: Placement::default(),
+        points: None,
         area: egui::Rect::NOTHING,
     };
     let area = PixelRect {
@@ -285,8 +286,8 @@ fn points_lie_where_the_camera_sees_them_and_surfaces_hide_them() {
         })
         .collect();
     list[2].p = at(films[2], -5.0); // behind the eye
-    let show = |side: f32, count: usize, depths: Depths| {
-        let callback = PointsCallback {
+    let show = |side: u32, count: usize, depths: Depths| {
+        let callback = PointsLayer {
             points: Points {
                 list: Arc::new(list.clone()),
                 number: 1,
@@ -294,7 +295,7 @@ fn points_lie_where_the_camera_sees_them_and_surfaces_hide_them() {
             count,
             projection: camera.projection(),
             place: (Vec2::ZERO, 1.0),
-            area: SIZE.as_vec2(),
+            alone: false,
             side,
             depths: Arc::new(depths),
         };
@@ -304,27 +305,74 @@ fn points_lie_where_the_camera_sees_them_and_surfaces_hide_them() {
             &gpu,
             format,
             |_| {
-                resources.prepare(&gpu.device, &gpu.queue, &callback);
+                resources.prepare(&gpu.device, &gpu.queue, &callback, SIZE.as_vec2());
                 resources
             },
             |resources, pass| resources.paint(pass),
         )
     };
-    let open = show(1.0, 4, Depths::default());
+    let open = show(1, 4, Depths::default());
     for i in [0, 1, 3] {
         assert_eq!(places(&open, colors[i]), [films[i].as_uvec2()], "{i}");
     }
     assert!(places(&open, colors[2]).is_empty());
-    let large = show(3.0, 4, Depths::default());
+    let large = show(3, 4, Depths::default());
     assert_eq!(places(&large, colors[0]).len(), 9);
     assert_eq!(places(&large, colors[0])[4], films[0].as_uvec2());
     // The first alone; then a wall over the left half, nearer than the points.
-    let first = show(1.0, 1, Depths::default());
+    let first = show(1, 1, Depths::default());
     assert!(places(&first, colors[1]).is_empty() && !places(&first, colors[0]).is_empty());
     let wall = Depths {
         size: [2, 1],
         depths: vec![1.0, 1e30],
     };
-    let behind = show(1.0, 4, wall);
+    let behind = show(1, 4, wall);
     assert!(places(&behind, colors[0]).is_empty() && !places(&behind, colors[1]).is_empty());
+}
+
+/// Prints how long a million points take on this machine's driver.
+#[test]
+fn a_million_points_are_drawn() {
+    let Some(gpu) = gpu() else { return };
+    let camera = crate::engine::camera::Camera::new(&crate::engine::scene::desc::CameraDesc {
+        position: glam::Vec3::new(0.0, 0.0, 3.0),
+        target: glam::Vec3::ZERO,
+        width: SIZE.x,
+        height: SIZE.y,
+        ..Default::default()
+    })
+    .expect("a view");
+    let n = 1_000_000;
+    let point = |i: u32| Point {
+        p: [
+            (i % 1000) as f32 * 2e-3 - 1.0,
+            (i / 1000) as f32 * 2e-3 - 1.0,
+            0.0,
+        ],
+        color: [255, 255, 255, 255],
+    };
+    let points = Points {
+        list: Arc::new((0..n).map(point).collect()),
+        number: 1,
+    };
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let mut resources = PointResources::new(&gpu.device, format);
+    for side in [1, 2] {
+        let callback = PointsLayer {
+            points: points.clone(),
+            count: n as usize,
+            projection: camera.projection(),
+            place: (Vec2::ZERO, 1.0),
+            alone: false,
+            side,
+            depths: Arc::default(),
+        };
+        for _ in 0..3 {
+            let start = std::time::Instant::now();
+            resources.prepare(&gpu.device, &gpu.queue, &callback, SIZE.as_vec2());
+            let pixels = drawn(&gpu, format, |_| (), |(), pass| resources.paint(pass));
+            assert!(!places(&pixels, [255; 3]).is_empty());
+            println!("{side}: {:?}", start.elapsed());
+        }
+    }
 }

@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3A};
 use crate::engine::camera::Projection;
 use crate::engine::math::Frame as Basis;
 use crate::engine::photon::{MapKind, SplitPlane};
-use crate::viewer::gpu::{PixelRect, PointsCallback, place};
-use crate::viewer::photons::{Drawn, Found};
+use crate::viewer::gpu::{PixelRect, PointsLayer, place};
+use crate::viewer::photons::Found;
 use crate::viewer::workspace::Workspace;
 
 /// Corners of a circle.
@@ -46,28 +46,12 @@ pub fn show(ui: &Ui, workspace: &Workspace, rect: Rect) {
     let Ok(camera) = workspace.model.camera(workspace.pixels()) else {
         return;
     };
-    if choice.alone && choice.is_on() {
-        ui.painter().rect_filled(rect, 0.0, Color32::BLACK);
-    }
     let per_point = ui.ctx().pixels_per_point();
     let area = PixelRect {
         min: Vec2::ZERO,
         size: workspace.area.as_vec2(),
     };
     let (corner, scale) = place(area, workspace.pixels(), workspace.placement);
-    if choice.drawn != Drawn::None {
-        let callback = PointsCallback {
-            points: workspace.photons.points.clone(),
-            count: usize::try_from(workspace.photons.landed()).unwrap_or(usize::MAX),
-            projection: camera.projection(),
-            place: (corner, scale),
-            area: area.size,
-            side: choice.side as f32,
-            depths: workspace.photons.depths.clone(),
-        };
-        let paint = egui_wgpu::Callback::new_paint_callback(rect, callback);
-        ui.painter().add(paint);
-    }
     let (center, radius) = scene.geometry.bounding_sphere();
     let pen = Pen {
         painter: ui.painter().with_clip_rect(rect),
@@ -107,6 +91,39 @@ pub fn show(ui: &Ui, workspace: &Workspace, rect: Rect) {
     {
         pen.found(found, radius);
     }
+}
+
+/// Most photons that are drawn while the camera moves.
+const MOVING: u64 = 250_000;
+
+/// The photons over the picture, if they are shown.
+pub fn layer(workspace: &Workspace) -> Option<PointsLayer> {
+    let choice = workspace.photons.choice;
+    let frame = workspace.frame.as_ref()?;
+    let single = workspace.model.display.tiles().len() == 1;
+    if !single || frame.photons.is_none() || !choice.is_on() {
+        return None;
+    }
+    let camera = workspace.model.camera(workspace.pixels()).ok()?;
+    let area = PixelRect {
+        min: Vec2::ZERO,
+        size: workspace.area.as_vec2(),
+    };
+    let landed = workspace.photons.landed();
+    let (count, side) = if workspace.navigating {
+        (landed.min(MOVING), 1)
+    } else {
+        (landed, choice.side)
+    };
+    Some(PointsLayer {
+        points: workspace.photons.points.clone(),
+        count: usize::try_from(count).unwrap_or(usize::MAX),
+        projection: camera.projection(),
+        place: place(area, workspace.pixels(), workspace.placement),
+        side,
+        alone: choice.alone,
+        depths: workspace.photons.depths.clone(),
+    })
 }
 
 /// The box of the points; None without any.

@@ -33,6 +33,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             number: workspace.frame_number,
             display: workspace.model.display,
             placement: workspace.placement,
+            points: photon_lines::layer(workspace),
             area: rect,
         };
         let paint = egui_wgpu::Callback::new_paint_callback(rect, callback);
