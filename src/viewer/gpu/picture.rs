@@ -136,6 +136,8 @@ impl Resources {
         let mut slots: Vec<usize> = tiles.iter().flat_map(|t| t.layers.clone()).collect();
         slots.sort_unstable();
         slots.dedup();
+        // An expression that was just typed has no layer yet.
+        slots.retain(|slot| *slot < picture.frame.layers.len());
         slots.truncate(SLOTS);
         // Without layers the sum is black; a buffer must be bound all the same.
         let uploaded = if slots.is_empty() { &[0][..] } else { &slots };

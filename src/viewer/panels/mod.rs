@@ -5,6 +5,7 @@ mod browser;
 mod camera;
 mod components;
 mod display;
+mod expressions;
 mod gallery;
 mod hand;
 mod help;
@@ -34,9 +35,10 @@ pub use style::apply as apply_style;
 type Section = (&'static str, bool, fn(&mut Ui, &mut Workspace));
 
 /// The panel's sections from top to bottom.
-const SECTIONS: [Section; 7] = [
+const SECTIONS: [Section; 8] = [
     ("Algorithm", true, algorithm::show),
     ("Components", true, components::show),
+    ("Expressions", false, expressions::show),
     ("Photons", false, photons::show),
     ("Display", true, display::show),
     ("Camera", false, camera::show),
@@ -82,6 +84,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     gallery::show(ui, workspace);
     browser::show(ui, workspace);
 
+    workspace.settle();
     let busy = workspace.navigating || ui.input(|i| i.pointer.any_down());
     workspace.history.observe(&workspace.model, busy);
 }
