@@ -143,3 +143,29 @@ fn json_output_is_one_value_and_nothing_else() {
     assert_eq!(row["scene"], "point-light");
     assert!((row["k"].as_f64().unwrap() - 1000.0 * relmse * t_cpu).abs() < 1e-9);
 }
+
+#[test]
+fn integrators_are_compared_at_equal_time() {
+    let dir = folder();
+    let reference = reference("cornell-diffuse");
+    let args = [
+        "bench",
+        "integrators",
+        &reference,
+        "--seconds",
+        "0.3",
+        "--integrators",
+        "path,bdpt,whitted",
+        "--json",
+    ];
+    let rows = json(dir.path(), &args);
+    let rows = rows.as_array().unwrap();
+    assert_eq!(rows.len(), 3);
+    let figure = |row: &serde_json::Value, name: &str| row[name].as_f64().unwrap();
+    for row in rows {
+        assert!(figure(row, "t_wall") >= 0.3 && figure(row, "relmse") > 0.0);
+    }
+    let brightness = |i: usize| figure(&rows[i], "brightness");
+    assert!((brightness(0) - 1.0).abs() < 0.1 && (brightness(1) - 1.0).abs() < 0.1);
+    assert!(brightness(2) < 0.9, "Whitted finds no indirect light");
+}

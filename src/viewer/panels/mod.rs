@@ -21,6 +21,7 @@ mod plan;
 mod scene;
 mod statistics;
 mod status;
+mod strategies;
 mod style;
 mod widgets;
 

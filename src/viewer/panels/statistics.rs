@@ -66,9 +66,75 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             bytes(memory(frame)),
             "Of the frame that is shown, all layers; the graphics card holds those that are shown.",
         );
+        walks(ui, frame);
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         figure(ui, "Threads", threads.to_string(), "Threads that render.");
     });
+    for fact in &frame.facts {
+        let text = format!("{}: {}", fact.label, fact.value);
+        ui.label(text).on_hover_text("Prepared before the picture.");
+    }
+}
+
+/// What the walks did: levels, lengths, roulette, mutations.
+fn walks(ui: &mut Ui, frame: &Frame) {
+    let stats = &frame.stats;
+    let samples = stats.samples.max(1);
+    let [eye, light] = stats.lengths();
+    let none = Vec::new();
+    for (name, counts, doc) in [
+        (
+            "Rays from the eye",
+            stats.levels(),
+            "Rays of walks from the eye a sample, after 0, 1, 2 … events; the last counts all \
+             after it.",
+        ),
+        (
+            "Rays from lights",
+            stats.light_levels(),
+            "The same of walks from the lights.",
+        ),
+        (
+            "Walks from the eye",
+            eye.as_ref().unwrap_or(&none).as_slice(),
+            "Walks a sample that ended after 0, 1, 2 … events. Trees of rays have none.",
+        ),
+        (
+            "Walks from lights",
+            light.as_ref().unwrap_or(&none).as_slice(),
+            "The same of walks from the lights.",
+        ),
+    ] {
+        if !counts.is_empty() {
+            figure(ui, name, shares(counts, samples), doc);
+        }
+    }
+    if let Some(survival) = stats.survival() {
+        figure(
+            ui,
+            "Roulette survived",
+            format!("{:.1} %", survival * 100.0),
+            "Share of the games of Russian roulette that walks survived.",
+        );
+    }
+    if let Some(acceptance) = stats.acceptance() {
+        figure(
+            ui,
+            "Accepted mutations",
+            format!("{:.1} %", acceptance * 100.0),
+            "Share of the proposals of the Markov chains that were accepted.",
+        );
+    }
+}
+
+/// Counts over `samples`, five in a line.
+fn shares(counts: &[u64], samples: u64) -> String {
+    let number = |n: &u64| format!("{:.3}", *n as f64 / samples as f64);
+    let lines = counts.chunks(5).map(|line| {
+        let line: Vec<String> = line.iter().map(number).collect();
+        line.join("  ")
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 fn memory(frame: &Frame) -> usize {

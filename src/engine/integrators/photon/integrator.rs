@@ -158,7 +158,9 @@ fn build_maps(
     let check = || cx.cancel.check();
     let maps = PhotonMaps::build(cx.scene, &cx.plan.classes, &key.settings, &check)?;
     for counts in maps.counts() {
-        stats.rays += counts.rays;
+        stats.rays += counts.rays - counts.levels.iter().sum::<u64>();
+        stats.add_light_rays(&counts.levels);
+        stats.add_games(counts.roulette[0], counts.roulette[1]);
         stats.cut_paths += counts.cut;
     }
     Ok(maps)
