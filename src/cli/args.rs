@@ -209,18 +209,31 @@ pub struct BenchIntegratorsArgs {
     /// Folders with scene.json and ref.exr, or pairs of a scene and its reference.
     #[arg(required = true, value_name = "DIR|SCENE=REF.exr")]
     pub scenes: Vec<String>,
-    /// Seconds of each render by the clock.
-    #[arg(long, value_name = "T", default_value = "30", value_parser = positive, allow_negative_numbers = true)]
-    pub seconds: f64,
+    /// Seconds of each render by the clock; of several, one render is looked at after each.
+    #[arg(long, value_name = "T,T…", value_delimiter = ',', default_value = "30", value_parser = positive, allow_negative_numbers = true)]
+    pub seconds: Vec<f64>,
     /// Threads; 0 is one a core.
     #[arg(long, value_name = "N", default_value = "2", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,
     /// Algorithms [default: all].
     #[arg(long, value_name = "ID,ID…", value_delimiter = ',')]
     pub integrators: Vec<String>,
+    /// Parameter of one algorithm, such as photon.fresh-maps=on; may be repeated.
+    #[arg(long, value_name = "ID.NAME=VALUE")]
+    pub set: Vec<String>,
     /// What is compared: whole, direct, specular, caustic or indirect.
     #[arg(long, value_name = "LAYER", default_value = "whole")]
     pub layer: String,
+    /// Compare the paths of an expression that the references hold as a layer, and compute these
+    /// alone.
+    #[arg(long, value_name = "EXPR", conflicts_with = "layer")]
+    pub expression: Option<String>,
+    /// Show K = 1000 · relMSE · CPU seconds in place of relMSE.
+    #[arg(long)]
+    pub efficiency: bool,
+    /// Independent maps from which `photon` reports its own bias; 0: no report.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = maps, allow_negative_numbers = true)]
+    pub bias_maps: u32,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
@@ -323,6 +336,14 @@ fn vertices(text: &str) -> Result<u64, String> {
     match text.parse() {
         Ok(n) if (2..=12).contains(&n) => Ok(n),
         _ => Err("it must be a whole number from 2 to 12".to_owned()),
+    }
+}
+
+/// None, or enough to know the spread of.
+fn maps(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(n) if n == 0 || (2..=10_000).contains(&n) => Ok(n),
+        _ => Err("it must be 0 or a whole number from 2 to 10000".to_owned()),
     }
 }
 

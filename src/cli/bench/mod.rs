@@ -2,6 +2,7 @@
 
 mod first_frame;
 mod integrators;
+mod integrators_table;
 #[cfg(feature = "viewer")]
 mod latency;
 mod noise_bias;
