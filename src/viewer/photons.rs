@@ -131,14 +131,16 @@ impl Choice {
     }
 }
 
+/// What a map says of a point, with the place of each photon and its kernel weight over the largest.
+pub type Queried = (MapKind, PhotonQuery, Vec<(Vec3A, f32)>);
+
 /// What a click found.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// Where.
     pub si: SurfaceInteraction,
-    /// What each map says there, with the place of each photon and its kernel weight over the
-    /// largest.
-    pub queries: Vec<(MapKind, PhotonQuery, Vec<(Vec3A, f32)>)>,
+    /// What each map says there.
+    pub queries: Vec<Queried>,
     /// Gather rays.
     pub rays: Vec<GatherRay>,
     /// What they bring.
