@@ -81,12 +81,13 @@ pub struct RenderArgs {
     #[arg(
         long,
         value_name = "N",
-        default_value_t = 0,
+        default_value = "0",
+        value_parser = seed,
         allow_negative_numbers = true
     )]
     pub seed: u64,
     /// Most scattering events of a path; 0 shows emitters only [default: unlimited].
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = depth, allow_negative_numbers = true)]
     pub max_depth: Option<u32>,
     /// Exposure of a PNG in stops.
     #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = exposure, allow_negative_numbers = true)]
@@ -323,6 +324,16 @@ const MAX_SIDE: u32 = 65_536;
 const MAX_PIXELS: u64 = 1 << 26;
 /// Most threads; more than any machine has cores.
 const MAX_THREADS: usize = 1024;
+
+fn seed(text: &str) -> Result<u64, String> {
+    let right = "it must be a whole number from 0 to 18446744073709551615";
+    text.parse().map_err(|_| right.to_owned())
+}
+
+fn depth(text: &str) -> Result<u32, String> {
+    let right = "it must be a whole number of events, from 0 to 4294967295";
+    text.parse().map_err(|_| right.to_owned())
+}
 
 fn at_least_one(text: &str) -> Result<u64, String> {
     match text.parse() {

@@ -8,6 +8,7 @@ use super::integrators_table as table;
 use crate::cli::args::BenchIntegratorsArgs;
 use crate::cli::error::CliError;
 use crate::cli::picture::{self, Picture, WHOLE};
+use crate::cli::print::note;
 use crate::cli::{print, render, scene};
 use crate::engine::integrators::photon::{self, PhotonSettings, noise_and_bias};
 use crate::engine::integrators::{Cancel, Entry, Params, Pass, REGISTRY};
@@ -62,7 +63,7 @@ pub fn run(args: &BenchIntegratorsArgs) -> Result<(), CliError> {
     for target in &targets? {
         for (entry, params) in &runs {
             let last = seconds.last().copied().unwrap_or_default();
-            eprintln!("{}: {}, {last} s", target.desc.name, entry.id);
+            note!("{}: {}, {last} s", target.desc.name, entry.id);
             let job = (*entry, params, &layer, seconds.as_slice());
             rows.extend(pool.install(|| target.measure(job, args.bias_maps))?);
         }

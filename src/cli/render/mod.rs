@@ -7,6 +7,7 @@ mod progress;
 mod pyramid;
 mod stop;
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -16,6 +17,7 @@ use super::args::RenderArgs;
 use super::error::CliError;
 use super::picture::{self, Attributes};
 use super::scene;
+use crate::cli::print::note;
 use crate::engine::film::Frame;
 use crate::engine::integrators::{Cancel, Cancelled};
 use crate::engine::measure::Metrics;
@@ -32,6 +34,7 @@ pub fn run(args: RenderArgs) -> Result<(), CliError> {
     if let Some(most) = args.pyramid {
         return pyramid::run(&args, &options, most);
     }
+    refuse_to_overwrite_inputs(&args)?;
     let desc = scene::read(&args.scene)?;
     let size = options
         .size
@@ -85,7 +88,7 @@ fn render(
         progress.update(&state);
         if let Some(note) = options.stop.reached(&state) {
             progress.clear();
-            eprintln!("done: {note}");
+            note!("done: {note}");
             break;
         }
     }
@@ -108,7 +111,7 @@ fn render(
 fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Result<(), CliError> {
     let frame = &rendered.frame;
     if rendered.interrupted {
-        eprintln!(
+        note!(
             "note: interrupted; the picture holds the {} passes that were complete",
             frame.passes
         );
@@ -116,12 +119,38 @@ fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Re
     let attributes = Attributes::of(&rendered.scene, options, frame);
     picture::write(options, frame, &attributes)?;
     for fact in &rendered.frame.facts {
-        eprintln!("{}: {}", fact.label, fact.value);
+        note!("{}: {}", fact.label, fact.value);
     }
-    eprintln!("wrote {}", options.output.path.display());
+    note!("wrote {}", options.output.path.display());
     notes::print_after(frame, rendered.errors.as_ref());
     if args.json {
         super::print::json(&notes::figures(frame, rendered.errors.as_ref()))?;
+    }
+    Ok(())
+}
+
+/// A log or a picture must not replace what the render reads, nor each other.
+fn refuse_to_overwrite_inputs(args: &RenderArgs) -> Result<(), CliError> {
+    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let scene = Path::new(&args.scene);
+    let mut taken = vec![(real(scene), "the scene")];
+    taken.extend(
+        args.reference
+            .as_deref()
+            .map(|r| (real(r), "the reference")),
+    );
+    let outputs = [
+        (Some(&args.output), "the picture"),
+        (args.log.as_ref(), "the log"),
+    ];
+    for (path, what) in outputs {
+        let Some(path) = path else { continue };
+        if let Some((_, other)) = taken.iter().find(|(t, _)| *t == real(path)) {
+            let path = path.display();
+            let message = format!("{what} would overwrite {other}, {path}; give it another name");
+            return Err(CliError::usage(message));
+        }
+        taken.push((real(path), what));
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::cli::print::figure;
+use crate::cli::print::note;
 use crate::cli::scene::parameter_text;
 use crate::engine::film::Frame;
 use crate::engine::integrators::BadSample;
@@ -15,20 +16,22 @@ pub fn print_before(job: &RenderJob, plan: &RenderPlan, threads: usize) {
     let settings = &job.settings;
     let (id, params) = (settings.integrator.id, parameter_text(&settings.params));
     let (width, height) = (job.size.x, job.size.y);
-    eprintln!(
+    note!(
         "{}: {width}x{height}, {id} ({params}), seed {}, {threads} threads",
-        job.scene.name, settings.seed
+        job.scene.name,
+        settings.seed
     );
     for warning in &job.scene.warnings {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     for left_out in &plan.left_out {
-        eprintln!("left out: {} ({})", left_out.what, left_out.why);
+        note!("left out: {} ({})", left_out.what, left_out.why);
     }
     if let Some(missing) = (settings.integrator.missing)(&job.scene.features, &settings.params) {
-        eprintln!(
+        note!(
             "warning: {id} cannot find {} here: {}",
-            missing.words, missing.why
+            missing.words,
+            missing.why
         );
     }
 }
@@ -94,7 +97,7 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
 pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
     let f = figures(frame, reference);
     let error = f.error.map_or("unknown".to_owned(), figure);
-    eprintln!(
+    note!(
         "t_wall {} s, t_cpu {} s, {} spp, {} rays, {} Mrays/s, {} samples/s, error {error}",
         figure(f.t_wall),
         figure(f.t_cpu),
@@ -118,44 +121,45 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
     ] {
         if !counts.is_empty() {
             let counts: Vec<String> = counts.iter().map(u64::to_string).collect();
-            eprintln!("{what} 0, 1, 2 … events: {}", counts.join(" "));
+            note!("{what} 0, 1, 2 … events: {}", counts.join(" "));
         }
     }
     if let Some(survival) = f.roulette_survival {
-        eprintln!("roulette survived: {} %", figure(100.0 * survival));
+        note!("roulette survived: {} %", figure(100.0 * survival));
     }
     if let Some(acceptance) = f.acceptance {
-        eprintln!("accepted mutations: {} %", figure(100.0 * acceptance));
+        note!("accepted mutations: {} %", figure(100.0 * acceptance));
     }
     if let Some(m) = reference {
         let nmse = m.nmse.map_or("undefined".to_owned(), figure);
         let (rmse, relmse) = (figure(m.rmse), figure(m.relmse));
-        eprintln!("against the reference: rmse {rmse}, relmse {relmse}, nmse {nmse}");
+        note!("against the reference: rmse {rmse}, relmse {relmse}, nmse {nmse}");
     }
     if f.non_finite > 0 {
         let first = frame.stats.first_non_finite.map_or_else(String::new, place);
-        eprintln!(
+        note!(
             "warning: {} samples were not finite and were left out{first}",
             f.non_finite
         );
     }
     if f.cut_paths > 0 {
-        eprintln!(
+        note!(
             "warning: {} paths were cut at the largest number of events",
             f.cut_paths
         );
     }
     if frame.stats.dark_starts > 0 {
-        eprintln!(
+        note!(
             "warning: no independent sample found light, so that the Markov chains had nowhere to \
              start from and what they add is black; raise bootstrap"
         );
     }
     if f.cut_trees > 0 {
-        eprintln!(
+        note!(
             "warning: {} of {} trees of rays were cut at their largest number: the picture is too \
              dark; raise max-rays, or lower rays or depth",
-            f.cut_trees, frame.stats.samples
+            f.cut_trees,
+            frame.stats.samples
         );
     }
 }

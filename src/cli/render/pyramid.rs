@@ -6,6 +6,7 @@ use super::{RenderOptions, cancel_on_interrupt, thread_pool};
 use crate::cli::args::RenderArgs;
 use crate::cli::error::CliError;
 use crate::cli::picture::Format;
+use crate::cli::print::note;
 use crate::cli::scene;
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
 use crate::engine::integrators::pyramid::{TechniqueImage, pyramid, sheet};
@@ -96,6 +97,6 @@ fn write(options: &RenderOptions, size: UVec2, images: &[TechniqueImage]) -> Res
     atomic::write(path, &bytes).map_err(|error| {
         CliError::failed(format!("{} cannot be written: {error}", path.display()))
     })?;
-    eprintln!("wrote {}", path.display());
+    note!("wrote {}", path.display());
     Ok(())
 }

@@ -10,7 +10,7 @@ use crate::engine::path::{ClassId, PathClasses};
 use crate::engine::sampling::Sampler;
 use crate::engine::scene::Scene;
 
-/// Which photons a walk keeps. Together the maps hold every prefix once (CONTRACT rule 7).
+/// Which photons a walk keeps. Together the maps hold every prefix once (rule 7 of the code map).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapKind {
     /// Prefixes (S|G)+.

@@ -35,7 +35,7 @@ pub struct Vertex {
     /// times this reaches the pixel, or the flux that arrives here from the light in W.
     pub throughput: Rgb,
     /// Class of the events between this vertex and the end the walk began at, its own excluded
-    /// (CONTRACT rule 4).
+    /// (rule 4 of the code map).
     pub class: ClassId,
     /// The event drawn there to go on. It restricts nothing that is evaluated there.
     pub event: Option<Event>,
