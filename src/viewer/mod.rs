@@ -23,6 +23,7 @@ pub mod navigation;
 pub mod notices;
 pub mod opening;
 pub mod panels;
+pub mod photons;
 pub mod picking;
 pub mod preferences;
 mod rendering;

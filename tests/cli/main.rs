@@ -1,5 +1,6 @@
 //! The program itself: exit codes, sentences, files.
 
+mod bad_scenes;
 mod figures;
 mod files;
 mod running;

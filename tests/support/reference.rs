@@ -67,9 +67,13 @@ pub fn whole_mean(frames: &[Frame]) -> f64 {
     sum / frames.len() as f64
 }
 
-/// Layers with blocks that hardly any sample meets: slivers of the floor, and the ring's own caustic
-/// seen in the ring, which both walks find by chance hits of the lamp alone. They are judged by the
-/// variance of the whole layer ([`Blocks::pool_variance`]), their image mean as any other.
+/// Layers with blocks that hardly any sample meets: slivers of the floor and the ring's own caustic
+/// seen in the ring, which both walks find by chance hits of the lamp alone; light from the glossy
+/// blocks that reaches far walls; the furnace's few pixels from which a second diffuse surface is
+/// seen at a glance. A block in which sixteen runs meet nothing, or one path, has no standard error
+/// of its own. They are judged by the variance of the whole layer ([`Blocks::pool_variance`]), their
+/// image mean as any other; every unbiased integrator is held to them, so that what path tracing
+/// meets seldom is judged by one that meets it often.
 const RARE: [(&str, &str); 4] = [
     ("caustic-ring", "specular"),
     ("caustic-ring", "caustic"),

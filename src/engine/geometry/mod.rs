@@ -17,7 +17,7 @@ pub mod triangle;
 
 pub use bounds::Bounds3;
 pub use interaction::SurfaceInteraction;
-pub use mesh::{DropReport, MeshInput};
+pub use mesh::{DropReport, MAX_COORDINATE, MeshInput};
 pub use offset::offset_origin;
 pub use ray::{Hit, Ray};
 pub use sphere::{Sphere, SphereInput};

@@ -158,7 +158,7 @@ impl RayIntegrator for Estimator {
             }
             let suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
             walk = walk.after(&si, &sample, suffix, 1.0);
-            if cx.plan.is_pointless(suffix) || !walk.survives(self.roulette, roulette) {
+            if cx.plan.is_pointless(suffix) || !walk.survives(self.roulette, roulette, stats) {
                 return;
             }
             ray = si.spawn_ray(sample.wi);

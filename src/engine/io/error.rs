@@ -46,8 +46,10 @@ impl std::error::Error for InputError {}
 
 /// `; did you mean "name"?` for the nearest of `names`, empty if none is near.
 pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    // A word of more than half of its letters wrong is no slip.
-    let near = |name: &&str| strsim::damerau_levenshtein(word, name) <= (word.len() / 2).max(1);
+    // A word of more than half of its letters wrong is no slip; a beginning is one.
+    let begins = |name: &str| word.len() > 2 && name.starts_with(word);
+    let slips = |name: &str| strsim::damerau_levenshtein(word, name) <= (word.len() / 2).max(1);
+    let near = |name: &&str| begins(name) || slips(name);
     let distance = |name: &&str| strsim::damerau_levenshtein(word, name);
     let nearest = names.into_iter().filter(|n| near(n)).min_by_key(distance);
     nearest.map_or_else(String::new, |n| format!("; did you mean \"{n}\"?"))

@@ -195,8 +195,8 @@ impl<'a> Fields<'a> {
         }
         let mut triple = [0.0; 3];
         for (x, item) in triple.iter_mut().zip(items) {
-            let right = "three finite numbers";
-            *x = self.number_in(item, &format!("each of {name}'s"), right, |_| true)?;
+            let right = "finite";
+            *x = self.number_in(item, &format!("each number of {name}"), right, |_| true)?;
         }
         Ok(triple)
     }

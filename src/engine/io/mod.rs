@@ -14,6 +14,7 @@ mod json;
 mod lights;
 mod materials;
 mod mtl;
+mod mtl_files;
 pub mod obj;
 pub mod scene_file;
 mod shapes;

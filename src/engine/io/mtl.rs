@@ -13,6 +13,7 @@
 //! A mixture scatters at most what came in: weights are scaled down where Kd + Ks exceeds 1.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -20,11 +21,15 @@ use super::error::InputError;
 use super::image::Encoding;
 use super::materials::Colors;
 use crate::engine::math::Rgb;
-use crate::engine::scene::desc::{ColorDesc, MaterialDesc, NamedMaterial};
+use crate::engine::scene::desc::{ColorDesc, ImageData, MaterialDesc, NamedMaterial};
 
 /// One `newmtl` block as it stands in the file.
 #[derive(Clone, Debug, Default)]
 pub struct MtlMaterial {
+    /// The file it stands in; its textures lie beside that.
+    pub file: String,
+    /// The line of each of its statements, from 1, by keyword.
+    pub lines: HashMap<String, usize>,
     /// Its name.
     pub name: String,
     /// Kd.
@@ -47,6 +52,19 @@ pub struct MtlMaterial {
     pub unknown: HashMap<String, String>,
 }
 
+impl MtlMaterial {
+    /// The image that the statement `keyword` names.
+    fn texture(
+        &self,
+        keyword: &str,
+        statement: &str,
+        colors: &mut Colors<'_>,
+    ) -> Result<Arc<ImageData>, InputError> {
+        let line = self.lines.get(keyword).copied().unwrap_or(1);
+        colors.image(&self.file, line, texture_name(statement), Encoding::Srgb)
+    }
+}
+
 /// A material of an MTL file and what it emits.
 pub struct Mapped {
     /// The material itself comes first; parts of a mixture follow, with indices from its own.
@@ -67,12 +85,7 @@ pub fn default_material() -> NamedMaterial {
 }
 
 /// Maps one material; `base` is the index it will have.
-pub fn map(
-    mtl: &MtlMaterial,
-    file: &str,
-    base: usize,
-    colors: &mut Colors<'_>,
-) -> Result<Mapped, InputError> {
+pub fn map(mtl: &MtlMaterial, base: usize, colors: &mut Colors<'_>) -> Result<Mapped, InputError> {
     let share = |c: Option<[f32; 3]>, or: f32| {
         let c = c.unwrap_or([or; 3]);
         Rgb::from(c.map(|x| if x.is_finite() { x.clamp(0.0, 1.0) } else { or }))
@@ -96,7 +109,7 @@ pub fn map(
     };
     let reflectance = match &mtl.diffuse_texture {
         Some(name) => {
-            let image = colors.image(file, 1, texture_name(name), Encoding::Srgb)?;
+            let image = mtl.texture("map_Kd", name, colors)?;
             let scale = if mtl.diffuse.is_some() && !diffuse.is_black() {
                 diffuse
             } else {
@@ -106,7 +119,7 @@ pub fn map(
         }
         None => ColorDesc::Constant(diffuse),
     };
-    let emission = emission(mtl, file, colors)?;
+    let emission = emission(mtl, colors)?;
     let named = |name: String, material| NamedMaterial {
         name,
         material,
@@ -200,11 +213,7 @@ fn opaque(
     ]
 }
 
-fn emission(
-    mtl: &MtlMaterial,
-    file: &str,
-    colors: &mut Colors<'_>,
-) -> Result<Option<ColorDesc>, InputError> {
+fn emission(mtl: &MtlMaterial, colors: &mut Colors<'_>) -> Result<Option<ColorDesc>, InputError> {
     let sane = |x: f32| x.is_finite() && x >= 0.0;
     let ke = mtl
         .emissive
@@ -214,7 +223,7 @@ fn emission(
     let Some(name) = mtl.unknown.get("map_Ke") else {
         return Ok(ke.map(ColorDesc::Constant));
     };
-    let image = colors.image(file, 1, texture_name(name), Encoding::Srgb)?;
+    let image = mtl.texture("map_Ke", name, colors)?;
     Ok(Some(ColorDesc::Texture {
         image,
         scale: ke.unwrap_or(Rgb::WHITE),

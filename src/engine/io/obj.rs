@@ -4,7 +4,6 @@
 //! our own triangulation, which gets concave ones right.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::path::Path;
 
 use glam::{Vec3, Vec3A};
@@ -12,9 +11,11 @@ use tobj::{LoadError, LoadOptions};
 
 use super::error::InputError;
 use super::materials::Colors;
-use super::mtl::{self, MtlMaterial};
-use super::source::{FileSource, beside, reason};
+use super::mtl;
+use super::mtl_files::MtlFiles;
+use super::source::{FileSource, reason};
 use super::triangulate::triangulate;
+use crate::engine::geometry::MAX_COORDINATE;
 use crate::engine::math::Rgb;
 use crate::engine::scene::desc::{CameraDesc, LightDesc, MeshDesc, NamedMaterial, SceneDesc};
 
@@ -47,17 +48,21 @@ pub fn read(
         ignore_lines: true,
         ..LoadOptions::default()
     };
-    let missing = RefCell::new(Vec::new());
+    let mtl_files = RefCell::new(MtlFiles::default());
     let loaded = tobj::load_obj_buf(&mut &bytes[..], &options, |name| {
-        load_mtl(files, path, name, &missing)
+        mtl_files.borrow_mut().load(files, path, name)
     });
     let (models, materials) = loaded.map_err(|e| locate(path, &bytes, &e))?;
+    let mut mtl_files = mtl_files.into_inner();
+    if let Some(error) = mtl_files.error.take() {
+        return Err(error);
+    }
     let mut file = ObjFile {
-        warnings: missing.into_inner(),
+        warnings: std::mem::take(&mut mtl_files.warnings),
         ..ObjFile::default()
     };
     let materials = materials.unwrap_or_default();
-    let (indices, emissions) = add_materials(&materials, path, colors, &mut file)?;
+    let (indices, emissions) = add_materials(&materials, &mtl_files, colors, &mut file)?;
     for model in models {
         let id = model.mesh.material_id.filter(|id| *id < indices.len());
         let mut mesh = convert(model.name, &model.mesh);
@@ -78,56 +83,18 @@ pub fn read(
     Ok(file)
 }
 
-fn load_mtl(
-    files: &dyn FileSource,
-    obj: &str,
-    name: &Path,
-    missing: &RefCell<Vec<String>>,
-) -> tobj::MTLLoadResult {
-    let path = beside(obj, &name.to_string_lossy());
-    match files.read(&path) {
-        Ok(bytes) => tobj::load_mtl_buf(&mut &bytes[..]).inspect_err(|e| {
-            missing
-                .borrow_mut()
-                .push(format!("{path}: {}; its materials are grey", words(e)));
-        }),
-        Err(e) => {
-            missing
-                .borrow_mut()
-                .push(format!("{path}: {}; its materials are grey", reason(&e)));
-            Err(LoadError::OpenFileFailed)
-        }
-    }
-}
-
 type Emission = Option<crate::engine::scene::desc::ColorDesc>;
 
 /// Maps the materials; returns the index and the emission of each.
 fn add_materials(
     materials: &[tobj::Material],
-    path: &str,
+    from: &MtlFiles,
     colors: &mut Colors<'_>,
     file: &mut ObjFile,
 ) -> Result<(Vec<usize>, Vec<Emission>), InputError> {
     let (mut indices, mut emissions) = (Vec::new(), Vec::new());
     for m in materials {
-        let material = MtlMaterial {
-            name: m.name.clone(),
-            diffuse: m.diffuse,
-            specular: m.specular,
-            emissive: m.emissive,
-            shininess: m.shininess,
-            dissolve: m.dissolve,
-            ior: m.optical_density,
-            illum: m.illumination_model,
-            diffuse_texture: m.diffuse_texture.clone(),
-            unknown: m
-                .unknown_param
-                .clone()
-                .into_iter()
-                .collect::<HashMap<_, _>>(),
-        };
-        let mapped = mtl::map(&material, path, file.materials.len(), colors)?;
+        let mapped = mtl::map(&from.placed(m), file.materials.len(), colors)?;
         indices.push(file.materials.len());
         emissions.push(mapped.emission);
         file.materials.extend(mapped.materials);
@@ -196,7 +163,6 @@ fn words(error: &LoadError) -> &'static str {
         LoadError::FaceTexCoordOutOfBounds => "a face names a texture coordinate that is not there",
         LoadError::FaceNormalOutOfBounds => "a face names a normal that is not there",
         LoadError::InvalidPolygon => "a face has at least three vertices",
-        LoadError::MaterialParseError => "a number or a name is missing in this material",
         LoadError::ReadError => "it is no text",
         LoadError::InvalidObjectName => "an object has no name",
         _ => "it cannot be understood as OBJ",
@@ -292,8 +258,9 @@ fn frame_all(meshes: &[MeshDesc]) -> CameraDesc {
             .flatten()
             .map(|i| m.positions[*i as usize])
     });
-    let finite = used.filter(|p| p.is_finite());
-    let (lo, hi) = finite.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(lo, hi), p| {
+    // What the geometry drops is not framed either.
+    let kept = used.filter(|p| p.abs().max_element() <= MAX_COORDINATE);
+    let (lo, hi) = kept.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(lo, hi), p| {
         (lo.min(p.into()), hi.max(p.into()))
     });
     if !(lo.is_finite() && hi.is_finite()) {

@@ -2,4 +2,4 @@
 
 pub mod metrics;
 
-pub use metrics::{Metrics, ReferenceNoise};
+pub use metrics::{Metrics, RELMSE_FLOOR, ReferenceNoise};

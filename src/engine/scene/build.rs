@@ -146,31 +146,39 @@ fn emitters(desc: &SceneDesc, geometry: &Geometry) -> Result<Vec<Emitter>, Strin
 }
 
 fn describe_dropped(dropped: &DropReport) -> Option<String> {
+    let shape = |n: usize, one: &str| match n {
+        1 => format!("1 {one}"),
+        n => format!("{n} {one}s"),
+    };
     let reasons = [
         (
             dropped.bad_index,
-            "triangles that name a vertex that is not there",
+            "triangle",
+            "with a vertex that is not there",
         ),
         (
             dropped.non_finite,
-            "triangles with coordinates that are no numbers",
+            "triangle",
+            "with coordinates that are no numbers",
         ),
         (
             dropped.out_of_range,
-            "triangles with coordinates beyond 1e18",
+            "triangle",
+            "with coordinates beyond 1e18",
         ),
-        (dropped.zero_area, "triangles without area"),
+        (dropped.zero_area, "triangle", "without area"),
         (
             dropped.invalid_sphere,
-            "spheres whose centre or radius cannot be used",
+            "sphere",
+            "whose centre or radius cannot be used",
         ),
     ];
     let list: Vec<String> = reasons
         .iter()
         .filter(|r| r.0 > 0)
-        .map(|(n, what)| format!("{n} {what}"))
+        .map(|(n, one, why)| format!("{} {why}", shape(*n, one)))
         .collect();
-    (!list.is_empty()).then(|| format!("left out: {}", list.join(", ")))
+    (!list.is_empty()).then(|| format!("dropped: {}", list.join(", ")))
 }
 
 /// What the materials on surfaces and the lights can do; a material that nothing wears counts not.

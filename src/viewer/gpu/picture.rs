@@ -12,6 +12,7 @@ use super::canvas::Canvas;
 use super::layers::{Layers, SLOTS};
 use super::layout::{PixelRect, Placement, TileUniform, uniform};
 use super::pipelines::Pipelines;
+use super::points::{PointResources, PointsKey, PointsLayer};
 use crate::engine::film::Frame;
 use crate::viewer::display::{Display, Tile};
 
@@ -28,6 +29,8 @@ pub struct PictureCallback {
     pub display: Display,
     /// How it lies in its area.
     pub placement: Placement,
+    /// Points of the scene over it.
+    pub points: Option<PointsLayer>,
     /// The area in points.
     pub area: egui::Rect,
 }
@@ -41,8 +44,9 @@ pub struct Resources {
     /// By the layers whose sum they show.
     bind_groups: HashMap<Vec<usize>, wgpu::BindGroup>,
     canvas: Canvas,
-    /// What the canvas shows: number of the frame, how, and where it lies.
-    drawn: Option<(u64, Display, Placement)>,
+    points: PointResources,
+    /// What the canvas shows: number of the frame, how, where it lies, and points over it.
+    drawn: Option<(u64, Display, Placement, Option<PointsKey>)>,
 }
 
 impl CallbackTrait for PictureCallback {
@@ -100,6 +104,7 @@ impl Resources {
             layers: Layers::new(),
             bind_groups: HashMap::new(),
             canvas: Canvas::new(device, format),
+            points: PointResources::new(device, format),
             drawn: None,
         }
     }
@@ -119,15 +124,27 @@ impl Resources {
         area: PixelRect,
     ) {
         let renewed = self.canvas.place(device, queue, area);
-        let wanted = (picture.number, picture.display, picture.placement);
+        let points = picture.points.as_ref();
+        let (display, placement) = (picture.display, picture.placement);
+        let wanted = (
+            picture.number,
+            display,
+            placement,
+            points.map(PointsLayer::key),
+        );
         if !renewed && self.drawn == Some(wanted) {
             return;
         }
         self.drawn = Some(wanted);
+        if let Some(points) = points {
+            self.points.prepare(device, queue, points, area.size);
+        }
         let tiles = picture.display.tiles();
         let mut slots: Vec<usize> = tiles.iter().flat_map(|t| t.layers.clone()).collect();
         slots.sort_unstable();
         slots.dedup();
+        // An expression that was just typed has no layer yet.
+        slots.retain(|slot| *slot < picture.frame.layers.len());
         slots.truncate(SLOTS);
         // Without layers the sum is black; a buffer must be bound all the same.
         let uploaded = if slots.is_empty() { &[0][..] } else { &slots };
@@ -170,7 +187,9 @@ impl Resources {
             })],
             ..wgpu::RenderPassDescriptor::default()
         });
-        for (i, tile) in tiles.iter().enumerate() {
+        let alone = picture.points.as_ref().is_some_and(|points| points.alone);
+        let shown = if alone { &[] } else { tiles };
+        for (i, tile) in shown.iter().enumerate() {
             let rect = area.of_tile(tile);
             let Some(bind_group) = self.bind_groups.get(&tile.layers) else {
                 continue;
@@ -186,6 +205,11 @@ impl Resources {
             pass.set_viewport(rect.min.x, rect.min.y, rect.size.x, rect.size.y, 0.0, 1.0);
             pass.set_bind_group(0, bind_group, &[offset as u32]);
             pass.draw(0..3, 0..1);
+        }
+        if picture.points.is_some() {
+            let size = area.size;
+            pass.set_viewport(0.0, 0.0, size.x, size.y, 0.0, 1.0);
+            self.points.paint(&mut pass);
         }
     }
 

@@ -16,6 +16,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         progress(ui, &frame);
         target(ui, &frame, &mut workspace.preferences.target_error);
         faults(ui, &frame);
+        walks(ui, &frame);
         for fact in &frame.facts {
             figure(ui, fact.label, &fact.value, "What the algorithm prepared.");
         }
@@ -24,6 +25,67 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     Grid::new("memory")
         .num_columns(2)
         .show(ui, |ui| memory(ui, &frame, workspace));
+}
+
+/// What the walks did: levels, lengths, roulette, mutations.
+fn walks(ui: &mut Ui, frame: &Frame) {
+    let stats = &frame.stats;
+    let samples = stats.samples.max(1);
+    let [eye, light] = stats.lengths();
+    let none = Vec::new();
+    for (name, counts, doc) in [
+        (
+            "Rays from the eye",
+            stats.levels(),
+            "Rays of walks from the eye a sample, after 0, 1, 2 … events; the last counts all \
+             after it.",
+        ),
+        (
+            "Rays from lights",
+            stats.light_levels(),
+            "The same of walks from the lights.",
+        ),
+        (
+            "Walks from the eye",
+            eye.as_ref().unwrap_or(&none).as_slice(),
+            "Walks a sample that ended after 0, 1, 2 … events. Trees of rays have none.",
+        ),
+        (
+            "Walks from lights",
+            light.as_ref().unwrap_or(&none).as_slice(),
+            "The same of walks from the lights.",
+        ),
+    ] {
+        if !counts.is_empty() {
+            figure(ui, name, shares(counts, samples), doc);
+        }
+    }
+    if let Some(survival) = stats.survival() {
+        figure(
+            ui,
+            "Roulette survived",
+            format!("{:.1} %", survival * 100.0),
+            "Share of the games of Russian roulette that walks survived.",
+        );
+    }
+    if let Some(acceptance) = stats.acceptance() {
+        figure(
+            ui,
+            "Accepted mutations",
+            format!("{:.1} %", acceptance * 100.0),
+            "Share of the proposals of the Markov chains that were accepted.",
+        );
+    }
+}
+
+/// Counts over `samples`, five in a line.
+fn shares(counts: &[u64], samples: u64) -> String {
+    let number = |n: &u64| format!("{:.3}", *n as f64 / samples as f64);
+    let lines = counts.chunks(5).map(|line| {
+        let line: Vec<String> = line.iter().map(number).collect();
+        line.join("  ")
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 fn progress(ui: &mut Ui, frame: &Frame) {
