@@ -110,7 +110,11 @@ impl fmt::Display for Report {
             )?,
             None => writeln!(f, "memory at rest: not known")?,
         }
-        write!(f, "errors: {}", self.errors.len())?;
+        write!(f, "MiB after each round:")?;
+        self.memory
+            .iter()
+            .try_for_each(|&bytes| write!(f, " {:.0}", mb(bytes)))?;
+        write!(f, "\nerrors: {}", self.errors.len())?;
         self.errors.iter().try_for_each(|e| write!(f, "\n  {e}"))
     }
 }
@@ -199,13 +203,15 @@ impl Soak {
                 self.stage = Stage::Deeds(done + 1);
             }
             Stage::Return(since) => {
-                let back = workspace.model.source == self.home.source
-                    && workspace.loading.is_none()
-                    && workspace.frame.is_some();
-                if back {
+                let reads = workspace.loading.is_some() || !workspace.requests.is_empty();
+                let back = workspace.model.source == self.home.source;
+                if !reads && back && workspace.frame.is_some() {
                     // The scene was read meanwhile: what else was changed is put back, too.
                     self.put_back(workspace, shown);
                     self.stage = Stage::Rest(now + REST);
+                } else if !reads && !back {
+                    // Another one was on its way when the first was asked for.
+                    self.put_back(workspace, shown);
                 } else if since.elapsed() > PATIENCE {
                     let sentence = "The first scene does not come back.".to_owned();
                     self.report.errors.push(sentence);
