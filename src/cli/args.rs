@@ -182,6 +182,21 @@ pub enum Bench {
     Rays(BenchRaysArgs),
     /// Error against time on scenes with references, single-threaded.
     Scenes(BenchScenesArgs),
+    /// A random hand plays with the window: nothing may fail and memory must not grow.
+    #[cfg(feature = "viewer")]
+    Soak(BenchSoakArgs),
+}
+
+/// Arguments of `bench soak`.
+#[cfg(feature = "viewer")]
+#[derive(Debug, Args)]
+pub struct BenchSoakArgs {
+    /// How long, in seconds.
+    #[arg(long, value_name = "T", default_value = "600", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub seconds: u64,
+    /// Seed of what the hand does.
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub seed: u64,
 }
 
 /// Arguments of `bench first-frame` and `bench latency`.

@@ -1,6 +1,7 @@
 //! The event loop: input goes to the workspace, what it asks for is carried out, and the window
 //! is drawn again only when something changed.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -16,6 +17,7 @@ use super::panels;
 use super::preferences::{self, Preferences};
 use super::rendering::Rendering;
 use super::shown::Shown;
+use super::soak::{Report, Soak};
 use super::source::Read;
 use super::thumbnails::{self, Thumbnail};
 use super::watch::Watch;
@@ -69,6 +71,11 @@ pub struct App {
     watch: Watch,
     wants_thumbnails: bool,
     capture: bool,
+    /// Where preferences are kept, if they are.
+    remembers: Option<PathBuf>,
+    soak: Option<Soak>,
+    /// What the random hand found.
+    pub report: Option<Report>,
     pub(super) clipboard: Option<arboard::Clipboard>,
     /// Why the window could not open.
     pub error: Option<ViewError>,
@@ -105,14 +112,43 @@ impl App {
             watch: Watch::new(Vec::new()),
             wants_thumbnails: true,
             capture: false,
+            remembers: None,
+            soak: None,
+            report: None,
             clipboard: None,
             error: None,
         };
-        if let Some(file) = preferences::file() {
-            app.workspace.preferences = Preferences::load(&file);
-        }
         app.load(opening, Some(read), false);
         Ok(app)
+    }
+
+    /// Uses what was remembered of the last window, and remembers this one.
+    pub fn use_preferences(&mut self) {
+        self.remembers = preferences::file();
+        if let Some(file) = &self.remembers {
+            self.workspace.preferences = Preferences::load(file);
+        }
+    }
+
+    /// A random hand plays with the window for `length`.
+    pub fn soak(&mut self, length: Duration, seed: u64) {
+        self.soak = Some(Soak::new(length, seed, self.workspace.model.clone()));
+    }
+
+    /// Lets the random hand do what is due.
+    fn soak_step(&mut self, event_loop: &ActiveEventLoop) {
+        let (Some(soak), Some(shown)) = (&mut self.soak, &mut self.shown) else {
+            return;
+        };
+        if soak.next() > Instant::now() {
+            return;
+        }
+        self.report = soak.step(&mut self.workspace, shown);
+        if self.report.is_some() {
+            event_loop.exit();
+        }
+        self.input_due = true;
+        self.request_redraw();
     }
 
     /// Starts to read a scene.
@@ -412,7 +448,14 @@ impl ApplicationHandler<Wake> for App {
             self.request_redraw();
         }
         self.warm_up();
-        let times = [self.repaint_at, self.watch.next_look(), self.warm_up_at];
+        self.soak_step(event_loop);
+        let deed = self.soak.as_ref().map(Soak::next);
+        let times = [
+            self.repaint_at,
+            self.watch.next_look(),
+            self.warm_up_at,
+            deed,
+        ];
         event_loop.set_control_flow(match times.into_iter().flatten().min() {
             Some(at) => ControlFlow::WaitUntil(at),
             None => ControlFlow::Wait,
@@ -420,8 +463,8 @@ impl ApplicationHandler<Wake> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        if let Some(file) = preferences::file() {
-            self.workspace.preferences.save(&file);
+        if let Some(file) = &self.remembers {
+            self.workspace.preferences.save(file);
         }
     }
 }

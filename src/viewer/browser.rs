@@ -40,6 +40,8 @@ pub struct Browser {
     pub error: Option<String>,
     /// A file that would be replaced, if the user agrees.
     pub replace: Option<PathBuf>,
+    /// It was not drawn yet: the name gets the keyboard then.
+    pub fresh: bool,
     folder: PathBuf,
     entries: Vec<Entry>,
 }
@@ -54,6 +56,7 @@ impl Browser {
             filter: String::new(),
             error: None,
             replace: None,
+            fresh: true,
             folder: PathBuf::new(),
             entries: Vec::new(),
         };

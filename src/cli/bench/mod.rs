@@ -9,6 +9,8 @@ mod noise_bias;
 mod photons;
 mod rays;
 mod scenes;
+#[cfg(feature = "viewer")]
+mod soak;
 
 use super::args::Bench;
 use super::error::CliError;
@@ -24,5 +26,7 @@ pub fn run(what: &Bench) -> Result<(), CliError> {
         Bench::Photons(args) => photons::run(args),
         Bench::Rays(args) => rays::run(args),
         Bench::Scenes(args) => scenes::run(args),
+        #[cfg(feature = "viewer")]
+        Bench::Soak(args) => soak::run(args),
     }
 }

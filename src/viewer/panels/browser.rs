@@ -131,6 +131,9 @@ fn name(ui: &mut Ui, browser: &mut Browser, answer: &mut Answer) {
         let label = ui.label("Name");
         let edit = TextEdit::singleline(&mut browser.name).desired_width(f32::INFINITY);
         let response = ui.add(edit).labelled_by(label.id);
+        if std::mem::take(&mut browser.fresh) {
+            response.request_focus();
+        }
         if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
             *answer = Answer::Accept;
         }
