@@ -188,6 +188,13 @@ fn the_table() {
         ("pssmlt", &[], lamp, None),
         ("photon", &[], zero, Some("LS(S|G)*E")),
         ("photon", &[], lamp, None),
+        ("photon", &[("caustic-map", "off")], lamp, Some("L(S|G)+DE")),
+        (
+            "photon",
+            &[("global-map", "off")],
+            zero,
+            Some("LS(S|G)*E|L.*D.*DE"),
+        ),
         ("sppm", &[], zero, Some("LS(S|G|V)*E")),
         ("sppm", &[], sky, None),
         ("vcm", &[], zero, Some("LS+((G|V)S+)*E")),
