@@ -2,7 +2,8 @@
 
 use egui_kittest::kittest::Queryable;
 use lightscope::engine::film::ToneMap;
-use lightscope::engine::integrators::{ParamKind, REGISTRY};
+use lightscope::engine::integrators::{ParamKind, REGISTRY, find};
+use lightscope::engine::session::Settings;
 use lightscope::viewer::commands::TABLE;
 use lightscope::viewer::display::Shown;
 use lightscope::viewer::model::PictureSize;
@@ -236,4 +237,32 @@ fn statistics_tell_what_the_walks_did() {
     assert!(desk.query_by_label(&text).is_some(), "{text}");
     assert!(desk.query_by_label("Walks from the eye").is_some());
     assert!(desk.query_by_label("Walks from lights").is_none());
+}
+
+/// What is not found is said, also of what is switched off.
+#[test]
+fn what_cannot_be_found_is_said() {
+    let mut desk = desk();
+    let said = |desk: &crate::desk::Desk, what: &str| {
+        let mut found = desk.query_all_by(|node| {
+            let label = node.label().or_else(|| node.value());
+            label.is_some_and(|label| label.starts_with("Cannot find") && label.contains(what))
+        });
+        found.next().is_some()
+    };
+    assert!(!said(&desk, ""));
+    for (id, set, words) in [
+        ("whitted", None, "L.+(D|G|V).*E"),
+        ("monte-carlo", Some(("depth", "2")), "L.{3,}E"),
+        ("photon", Some(("global-map", "off")), "L.*D.*DE"),
+    ] {
+        let settings = &mut desk.state_mut().model.settings;
+        *settings = Settings::new(find(id).expect("an integrator"));
+        if let Some((name, value)) = set {
+            let specs = settings.integrator.params;
+            settings.params.set(specs, name, value).expect("a value");
+        }
+        desk.run();
+        assert!(said(&desk, words), "{id} does not say {words}");
+    }
 }

@@ -87,7 +87,8 @@ pub(super) fn missing(features: &SceneFeatures, _params: &Params) -> Option<Miss
         words: "LS+((D|G|V)S+)*E".into(),
         why: "light of a point, spot or directional source that meets mirror or glass before and \
               after every diffuse or glossy surface passes no two neighbouring surfaces that a \
-              connection can join",
+              connection can join"
+            .into(),
     })
 }
 

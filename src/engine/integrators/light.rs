@@ -71,7 +71,7 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     };
     Some(Missing {
         words: words.into(),
-        why,
+        why: why.into(),
     })
 }
 

@@ -98,7 +98,7 @@ pub struct Missing {
     /// An expression that the lost words match.
     pub words: Cow<'static, str>,
     /// Why, in one sentence.
-    pub why: &'static str,
+    pub why: Cow<'static, str>,
 }
 
 /// Every integrator, in the order of the window's list.

@@ -65,7 +65,8 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     (features.zero_size_lights && features.specular).then(|| Missing {
         words: "LS(S|G|V)*E".into(),
         why: "light of a point, spot or directional source that first meets a mirror or glass is \
-              found by photons alone, and they are gathered at diffuse surfaces",
+              found by photons alone, and they are gathered at diffuse surfaces"
+            .into(),
     })
 }
 

@@ -92,7 +92,8 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     (features.zero_size_lights && features.specular).then(|| Missing {
         words: "LS+((G|V)S+)*E".into(),
         why: "light of a point, spot or directional source that meets mirror or glass before and \
-              after every glossy surface, and no diffuse one, can be neither connected nor merged",
+              after every glossy surface, and no diffuse one, can be neither connected nor merged"
+            .into(),
     })
 }
 
