@@ -4,6 +4,7 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use super::frame::FrameLayer;
+use super::halves::{ErrorEstimate, HalfSums, TileHalves};
 use super::pass_buffer::{PassBuffer, PassTile};
 use super::splats::SplatBuffer;
 use super::tiles::{TILE_PIXELS, Tiles};
@@ -228,34 +229,39 @@ impl Film {
         }
     }
 
-    /// Estimated RMSE of the whole over pixels and channels, divided by the image mean: half the
-    /// RMS difference of the two independent halves. None before each half has a pass, and for a
-    /// black image.
-    pub fn relative_error(&self) -> Option<f64> {
+    /// Estimated error of the whole, from its two halves. None before each half has a pass.
+    pub fn error_estimate(&self) -> Option<ErrorEstimate> {
         if self.passes < 2 {
             return None;
         }
-        let (mut sum, mut squares, mut n) = (0.0, 0.0, 0u64);
-        let halves = 1 + self.planned.count_ones() as usize;
-        for (t, tile) in self.data.iter().enumerate() {
-            for (place, _) in self.tiles.pixels(t) {
-                let [even, odd] = tile.counts(place, self.passes);
-                if even == 0 || odd == 0 {
-                    continue;
-                }
-                let (total, half) = (tile.planes[0][place], tile.planes[halves][place]);
-                let (n_even, n_odd) = (even as f64, odd as f64);
-                for c in 0..3 {
-                    let (a, b) = (half[c] / n_even, (total[c] - half[c]) / n_odd);
-                    sum += total[c] / (n_even + n_odd);
-                    // Var(a − b) = σ²(1/nₑ + 1/nₒ), and the mean's variance is σ²/(nₑ + nₒ).
-                    squares += (a - b).powi(2) * n_even * n_odd / (n_even + n_odd).powi(2);
-                    n += 1;
-                }
+        // Summed in the order of the tiles: the same bits for any number of threads.
+        let tiles = self.data.par_iter().enumerate();
+        let sums: Vec<HalfSums> = tiles.map(|(t, tile)| self.tile_halves(t, tile)).collect();
+        let mut all = HalfSums::default();
+        sums.iter().for_each(|sums| all.add(sums));
+        all.estimate()
+    }
+
+    fn tile_halves(&self, index: usize, tile: &FilmTile) -> HalfSums {
+        let mut pixels: TileHalves = [None; TILE_PIXELS];
+        let even_plane = 1 + self.planned.count_ones() as usize;
+        for (place, _) in self.tiles.pixels(index) {
+            let [even, odd] = tile.counts(place, self.passes);
+            if even == 0 || odd == 0 {
+                continue;
             }
+            let (total, half) = (tile.planes[0][place], tile.planes[even_plane][place]);
+            let (n_even, n_odd) = (even as f64, odd as f64);
+            let n = n_even + n_odd;
+            // Var(a − b) = σ²(1/nₑ + 1/nₒ), and the mean's variance is σ²/(nₑ + nₒ).
+            let scale = self.scale * (n_even * n_odd).sqrt() / n;
+            let halves = |c: usize| half[c] / n_even - (total[c] - half[c]) / n_odd;
+            pixels[place] = Some((
+                [0, 1, 2].map(|c| halves(c) * scale),
+                total.map(|t| self.scale * t / n),
+            ));
         }
-        let mean = sum / n as f64;
-        (mean > 0.0).then(|| (squares / n as f64).sqrt() / mean)
+        HalfSums::of(&pixels)
     }
 }
 
