@@ -43,6 +43,7 @@ fn whole_alone(job: &mut RenderJob) {
 #[test]
 fn the_interval_of_the_estimated_error_holds_the_true_one() {
     const RUNS: u64 = 200;
+    let mut wrong = Vec::new();
     for (name, integrator, set, passes) in [
         ("cornell-diffuse", "path", ("sampler", "sobol"), 8),
         ("cornell-diffuse", "path", ("sampler", "independent"), 8),
@@ -53,20 +54,37 @@ fn the_interval_of_the_estimated_error_holds_the_true_one() {
         let (scene, reference) = (scene(name), reference(name));
         let mut job = job(&scene, integrator, &[set]);
         whole_alone(&mut job);
-        let held = (0..RUNS).filter(|seed| {
-            job.settings.seed = *seed;
+        let (mut held, mut truth, mut estimated) = (0, 0.0, 0.0);
+        let (mut spread, mut claimed) = (0.0, 0.0);
+        for seed in 0..RUNS {
+            job.settings.seed = seed;
             let frame = render(&job, passes);
             let error = rmse(&frame, &reference);
-            let [low, high] = frame.error_estimate.expect("two halves").interval;
-            low <= error && error <= high
-        });
-        let held = held.count();
-        println!("{integrator} {set:?} on {name}: {held} of {RUNS}");
-        assert!(
-            (180..=198).contains(&held),
-            "{integrator} {name}: {held} of {RUNS}"
+            let estimate = frame.error_estimate.expect("two halves");
+            let [low, high] = estimate.interval;
+            held += usize::from(low <= error && error <= high);
+            let square = estimate.rmse.powi(2);
+            truth += error * error;
+            estimated += square;
+            spread += (error * error / square - 1.0).powi(2);
+            claimed += ((high / low).ln() / 1.96).powi(2);
+        }
+        let n = RUNS as f64;
+        println!(
+            "{integrator} {name}: mean square error {:.3e}, estimated {:.3e}, reference {:.3e}; \
+             relative spread {:.4}, claimed {:.4}",
+            truth / n,
+            estimated / n,
+            reference.1.powi(2),
+            (spread / n).sqrt(),
+            (claimed / n).sqrt()
         );
+        println!("{integrator} {set:?} on {name}: {held} of {RUNS}");
+        if !(180..=198).contains(&held) {
+            wrong.push(format!("{integrator} {name}: {held} of {RUNS}"));
+        }
     }
+    assert!(wrong.is_empty(), "{wrong:?}");
 }
 
 /// Renders to `end` passes and looks where reports look.
@@ -84,12 +102,15 @@ fn looks(job: &RenderJob, end: u64, mut at: impl FnMut(u64, &Frame, f64)) {
 
 #[test]
 fn predicted_times_are_at_most_twofold_off() {
+    let mut wrong = Vec::new();
     for (name, sampler) in [
         ("cornell-diffuse", "sobol"),
         ("cornell-glossy", "independent"),
+        ("closed-room", "sobol"),
+        ("furnace", "sobol"),
     ] {
         let scene = scene(name);
-        for seed in 0..10 {
+        for seed in 0..5 {
             let mut job = job(&scene, "path", &[("sampler", sampler)]);
             whole_alone(&mut job);
             job.settings.seed = seed;
@@ -110,12 +131,12 @@ fn predicted_times_are_at_most_twofold_off() {
             let early: Vec<Look> = all.iter().copied().filter(|l| l.passes <= 16).collect();
             let seconds = predict(&early, target).expect("a prediction").seconds;
             println!("{name} {sampler} seed {seed}: {seconds:.0} for 256");
-            assert!(
-                (128.0..=512.0).contains(&seconds),
-                "{name} {seed}: {seconds}"
-            );
+            if !(128.0..=512.0).contains(&seconds) {
+                wrong.push(format!("{name} {seed}: {seconds}"));
+            }
         }
     }
+    assert!(wrong.is_empty(), "{wrong:?}");
 }
 
 /// Slope of the error between 2 and `end` passes, mean squares over some seeds.
@@ -157,8 +178,8 @@ fn errors_fall_as_theory_says() {
 
 #[test]
 fn biased_methods_level_off_at_their_bias() {
-    let (scene, reference) = (scene("cornell-diffuse"), reference("cornell-diffuse"));
-    let set = [("indirect", "direct"), ("global-photons", "20000")];
+    let (scene, reference) = (scene("closed-room"), reference("closed-room"));
+    let set = [("indirect", "direct"), ("global-photons", "2000")];
     let mut job = job(&scene, "photon", &set);
     whole_alone(&mut job);
     let (mut points, mut parts) = (Vec::new(), None);
@@ -231,7 +252,11 @@ fn equal_pairs_raise_no_more_false_alarms_than_stated() {
     let (path, bdpt) = (small("path"), small("bdpt"));
     let (mut alarms, mut agreed) = (0, 0);
     for pair in 0..100u64 {
-        let mut referee = Referee::new(Rules::default());
+        let rules = Rules {
+            tolerance: 0.1,
+            ..Rules::default()
+        };
+        let mut referee = Referee::new(rules);
         for i in 0..32 {
             let seed = 1000 * pair + 2 * i;
             referee.add(0, &run(&path, seed, 2), 0.0);

@@ -84,6 +84,13 @@ const RECENT: f64 = 1.0 / 16.0;
 /// Looks needed before their slope is believed.
 const LOOKS: usize = 5;
 
+/// A slope between the bounds of theory, a quarter of the way nearer to −1/2, which looks at the
+/// noise of a few pixels cannot tell from steeper ones.
+fn pulled(slope: f64) -> f64 {
+    let slope = slope.clamp(*SLOPES.start(), *SLOPES.end());
+    0.75 * slope + 0.25 * SLOPES.end()
+}
+
 /// Predicts when the error falls to `target`, from looks in the order of their passes: it goes on
 /// falling from the last look at the rate of the recent ones, and a pass takes as long as recent
 /// ones took. What was prepared before the first pass counts once. None if there is nothing to
@@ -152,7 +159,7 @@ mod tests {
     fn what_is_prepared_once_is_not_counted_again() {
         for slope in [-0.5, -0.8] {
             let p = predict(&looks(|n| n.powf(slope)), 0.01).unwrap();
-            let passes = 0.01f64.powf(1.0 / slope);
+            let passes = 64.0 * (64f64.powf(slope) / 0.01).powf(-1.0 / pulled(slope));
             assert!((p.passes / passes - 1.0).abs() < 1e-9, "{p:?}");
             assert!(
                 (p.seconds / (3.0 + 0.5 * passes) - 1.0).abs() < 1e-9,
