@@ -109,6 +109,10 @@ pub struct RenderArgs {
     /// reference.
     #[arg(long, value_name = "FILE.jsonl")]
     pub log: Option<PathBuf>,
+    /// Instead of the picture write those of every strategy of bidirectional path tracing, weighted
+    /// and unweighted, for paths of up to N vertices: layers of an EXR, or a sheet as PNG.
+    #[arg(long, value_name = "N", value_parser = vertices, allow_negative_numbers = true)]
+    pub pyramid: Option<u64>,
     /// Print the final figures as JSON.
     #[arg(long)]
     pub json: bool,
@@ -175,6 +179,8 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Time from a change of camera to the first picture.
     FirstFrame(FirstFrameArgs),
+    /// Error of every integrator after the same time, on scenes with references.
+    Integrators(BenchIntegratorsArgs),
     /// What a user of the window waits for: camera to picture, input to answer of the panels.
     #[cfg(feature = "viewer")]
     Latency(FirstFrameArgs),
@@ -203,6 +209,42 @@ pub struct FirstFrameArgs {
     /// Threads; 0 is one a core.
     #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench integrators`.
+#[derive(Debug, Args)]
+pub struct BenchIntegratorsArgs {
+    /// Folders with scene.json and ref.exr, or pairs of a scene and its reference.
+    #[arg(required = true, value_name = "DIR|SCENE=REF.exr")]
+    pub scenes: Vec<String>,
+    /// Seconds of each render by the clock; of several, one render is looked at after each.
+    #[arg(long, value_name = "T,T…", value_delimiter = ',', default_value = "30", value_parser = positive, allow_negative_numbers = true)]
+    pub seconds: Vec<f64>,
+    /// Threads; 0 is one a core.
+    #[arg(long, value_name = "N", default_value = "2", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: usize,
+    /// Algorithms [default: all].
+    #[arg(long, value_name = "ID,ID…", value_delimiter = ',')]
+    pub integrators: Vec<String>,
+    /// Parameter of one algorithm, such as photon.fresh-maps=on; may be repeated.
+    #[arg(long, value_name = "ID.NAME=VALUE")]
+    pub set: Vec<String>,
+    /// What is compared: whole, direct, specular, caustic or indirect.
+    #[arg(long, value_name = "LAYER", default_value = "whole")]
+    pub layer: String,
+    /// Compare the paths of an expression that the references hold as a layer, and compute these
+    /// alone.
+    #[arg(long, value_name = "EXPR", conflicts_with = "layer")]
+    pub expression: Option<String>,
+    /// Show K = 1000 · relMSE · CPU seconds in place of relMSE.
+    #[arg(long)]
+    pub efficiency: bool,
+    /// Independent maps from which `photon` reports its own bias; 0: no report.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = maps, allow_negative_numbers = true)]
+    pub bias_maps: u32,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
@@ -297,6 +339,22 @@ fn at_least_one(text: &str) -> Result<u64, String> {
     match text.parse() {
         Ok(n) if n >= 1 => Ok(n),
         _ => Err("it must be a whole number of at least 1".to_owned()),
+    }
+}
+
+/// The longest paths of a pyramid: n vertices have n strategies.
+fn vertices(text: &str) -> Result<u64, String> {
+    match text.parse() {
+        Ok(n) if (2..=12).contains(&n) => Ok(n),
+        _ => Err("it must be a whole number from 2 to 12".to_owned()),
+    }
+}
+
+/// None, or enough to know the spread of.
+fn maps(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(n) if n == 0 || (2..=10_000).contains(&n) => Ok(n),
+        _ => Err("it must be 0 or a whole number from 2 to 10000".to_owned()),
     }
 }
 

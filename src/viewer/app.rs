@@ -4,27 +4,27 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui_wgpu::winit::Painter;
 use winit::application::ApplicationHandler;
-use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
-use winit::window::{Fullscreen, Window, WindowId};
+use winit::window::{Fullscreen, WindowId};
 
 use super::ViewError;
-use super::gpu::painter;
 use super::loader::Loader;
 use super::opening::Opening;
 use super::panels;
 use super::preferences::{self, Preferences};
 use super::rendering::Rendering;
+use super::shown::Shown;
 use super::source::Read;
 use super::thumbnails::{self, Thumbnail};
 use super::watch::Watch;
 use super::workspace::{Request, Workspace};
 
-/// Red, green, blue and opacity where no picture is yet.
-const BACKGROUND: [f32; 4] = [0.1, 0.1, 0.1, 1.0];
+/// Time without input after which the window prepares for what may be asked next.
+const REST: Duration = Duration::from_millis(400);
+/// Time between two steps of that: a step may keep the graphics device for most of it.
+const STEP: Duration = Duration::from_millis(150);
 
 /// What wakes the event loop from other threads.
 #[derive(Debug)]
@@ -39,8 +39,18 @@ pub enum Wake {
     Captured(Arc<egui::ColorImage>),
     /// The graphics device is gone.
     DeviceLost,
+    /// It refuses something.
+    DrawingFailed(String),
+    /// A tool that reads windows aloud wants something.
+    Accessibility(egui_winit::accesskit_winit::Event),
     /// A picture of the gallery.
     Thumbnail(Thumbnail),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for Wake {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Accessibility(event)
+    }
 }
 
 /// The program around the workspace.
@@ -52,19 +62,16 @@ pub struct App {
     context: egui::Context,
     shown: Option<Shown>,
     repaint_at: Option<Instant>,
+    /// An input waits for its answer.
+    input_due: bool,
+    /// When to prepare one more way to show the picture.
+    warm_up_at: Option<Instant>,
     watch: Watch,
     wants_thumbnails: bool,
     capture: bool,
     pub(super) clipboard: Option<arboard::Clipboard>,
     /// Why the window could not open.
     pub error: Option<ViewError>,
-}
-
-/// What exists while there is a window.
-struct Shown {
-    window: Arc<Window>,
-    input: egui_winit::State,
-    painter: Painter,
 }
 
 impl App {
@@ -93,6 +100,8 @@ impl App {
             context,
             shown: None,
             repaint_at: None,
+            input_due: false,
+            warm_up_at: None,
             watch: Watch::new(Vec::new()),
             wants_thumbnails: true,
             capture: false,
@@ -115,44 +124,18 @@ impl App {
         }
     }
 
-    fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<Shown, ViewError> {
-        let [width, height] = self.workspace.preferences.window;
-        let attributes = Window::default_attributes()
-            .with_title("lightscope")
-            .with_inner_size(LogicalSize::new(width, height))
-            .with_min_inner_size(LogicalSize::new(320.0, 240.0));
-        let window = event_loop
-            .create_window(attributes)
-            .map_err(|error| ViewError::Failed(format!("no window can be opened: {error}")))?;
-        let window = Arc::new(window);
-        let painter = self.painter(event_loop, &window)?;
-        let input = egui_winit::State::new(
-            self.context.clone(),
-            egui::ViewportId::ROOT,
-            event_loop,
-            Some(window.scale_factor() as f32),
-            window.theme(),
-            painter.max_texture_side(),
-        );
-        Ok(Shown {
-            window,
-            input,
-            painter,
-        })
+    fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewError> {
+        let size = self.workspace.preferences.window;
+        let shown = Shown::open(&self.context, event_loop, &self.proxy, size)?;
+        self.workspace.max_pixels = shown.max_pixels();
+        self.shown = Some(shown);
+        self.touched();
+        Ok(())
     }
 
-    fn painter(
-        &mut self,
-        event_loop: &ActiveEventLoop,
-        window: &Arc<Window>,
-    ) -> Result<Painter, ViewError> {
-        let proxy = self.proxy.clone();
-        let lost = move || drop(proxy.send_event(Wake::DeviceLost));
-        let display = event_loop.owned_display_handle();
-        let painter =
-            painter::create(&self.context, display, window, lost).map_err(ViewError::NoAdapter)?;
-        self.workspace.max_pixels = painter::max_pixels(&painter);
-        Ok(painter)
+    /// The user did something: what can wait does.
+    fn touched(&mut self) {
+        self.warm_up_at = Instant::now().checked_add(REST);
     }
 
     fn request_redraw(&self) {
@@ -202,8 +185,12 @@ impl App {
         if size.width == 0 || size.height == 0 {
             return;
         }
+        // Where software draws, an answer has all cores for itself.
+        let hold = (std::mem::take(&mut self.input_due) && shown.is_software())
+            .then(|| self.rendering.hold());
         let input = shown.input.take_egui_input(&shown.window);
         let workspace = &mut self.workspace;
+        workspace.gpu_bytes = shown.picture_bytes();
         let mut output = self.context.run_ui(input, |ui| panels::show(ui, workspace));
         shown
             .input
@@ -213,29 +200,26 @@ impl App {
             .get(&egui::ViewportId::ROOT)
             .map_or(Duration::MAX, |viewport| viewport.repaint_delay);
         self.repaint_at = Instant::now().checked_add(delay);
-        let primitives = self
-            .context
-            .tessellate(output.shapes, output.pixels_per_point);
-        let capture = if std::mem::take(&mut self.capture) {
+        let scale = output.pixels_per_point;
+        let primitives = self.context.tessellate(output.shapes, scale);
+        let mut captures = Vec::new();
+        if std::mem::take(&mut self.capture) {
             let proxy = self.proxy.clone();
             let send = move |image| drop(proxy.send_event(Wake::Captured(image)));
-            vec![egui::ScreenshotCallback::new(send)]
-        } else {
-            Vec::new()
-        };
-        let captures = !capture.is_empty();
-        shown.painter.paint_and_update_textures(
-            egui::ViewportId::ROOT,
-            output.pixels_per_point,
-            BACKGROUND,
-            &primitives,
-            &mut output.textures_delta,
-            capture,
-            &shown.window,
-        );
-        if captures {
-            painter::wait(&shown.painter);
+            captures.push(egui::ScreenshotCallback::new(send));
         }
+        shown.paint(&primitives, scale, &mut output.textures_delta, captures);
+        // A surface that had no picture is tried again.
+        if self
+            .context
+            .has_requested_repaint_for(&egui::ViewportId::ROOT)
+        {
+            shown.window.request_redraw();
+        }
+        if hold.is_some() {
+            shown.wait();
+        }
+        drop(hold);
         self.carry_out(event_loop);
         self.make_thumbnails();
         self.follow();
@@ -308,18 +292,51 @@ impl App {
 
     /// Makes everything on the graphics card anew.
     fn recover(&mut self, event_loop: &ActiveEventLoop) {
-        let Some(shown) = self.shown.take() else {
+        let Some(shown) = &mut self.shown else {
             return;
         };
-        drop(shown.painter);
-        match self.open(event_loop) {
-            Ok(shown) => self.shown = Some(shown),
+        // The gallery's pictures went with the device.
+        self.workspace.textures.clear();
+        match shown.renew(&self.context) {
+            Ok(()) => {
+                self.workspace.max_pixels = shown.max_pixels();
+                self.workspace.notices.clear_error("graphics");
+                self.workspace
+                    .notices
+                    .say("The graphics device was lost; the window goes on with a new one.");
+                self.touched();
+            }
             Err(error) => {
                 self.error = Some(error);
                 event_loop.exit();
             }
         }
-        self.request_redraw();
+    }
+
+    fn accessibility(&mut self, event: egui_winit::accesskit_winit::WindowEvent) {
+        use egui_winit::accesskit_winit::WindowEvent;
+        match event {
+            WindowEvent::InitialTreeRequested => self.context.enable_accesskit(),
+            WindowEvent::AccessibilityDeactivated => self.context.disable_accesskit(),
+            WindowEvent::ActionRequested(request) => {
+                if let Some(shown) = &mut self.shown {
+                    shown.input.on_accesskit_action_request(request);
+                }
+            }
+        }
+    }
+
+    /// Prepares what may be asked next, one step at a time.
+    fn warm_up(&mut self) {
+        if self.warm_up_at.is_none_or(|at| at > Instant::now()) {
+            return;
+        }
+        let more = match &self.shown {
+            // The picture comes first.
+            Some(shown) => self.workspace.frame.is_none() || shown.warm_up(),
+            None => false,
+        };
+        self.warm_up_at = more.then(|| Instant::now() + STEP);
     }
 }
 
@@ -329,8 +346,7 @@ impl ApplicationHandler<Wake> for App {
             return;
         }
         match self.open(event_loop) {
-            Ok(shown) => {
-                self.shown = Some(shown);
+            Ok(()) => {
                 self.set_title();
                 self.request_redraw();
             }
@@ -348,6 +364,15 @@ impl ApplicationHandler<Wake> for App {
             Wake::Saved(Err(sentence)) => self.workspace.notices.set_error("save", sentence),
             Wake::Captured(image) => self.save_window(&image),
             Wake::DeviceLost => self.recover(event_loop),
+            Wake::DrawingFailed(why) => {
+                // Told once: each repaint may fail in the same way.
+                let graphics = ("graphics", why);
+                if self.workspace.notices.errors().contains(&graphics) {
+                    return;
+                }
+                self.workspace.notices.set_error(graphics.0, graphics.1);
+            }
+            Wake::Accessibility(event) => self.accessibility(event.window_event),
             Wake::Thumbnail(thumbnail) => self.workspace.thumbnails.push(thumbnail),
         }
         self.request_redraw();
@@ -364,14 +389,15 @@ impl ApplicationHandler<Wake> for App {
                 if let Some((width, height)) = sides {
                     let points = size.to_logical(shown.window.scale_factor());
                     self.workspace.preferences.window = [points.width, points.height];
-                    let root = egui::ViewportId::ROOT;
-                    shown.painter.on_window_resized(root, width, height);
+                    shown.resize(width, height);
                 }
             }
             _ => {}
         }
         if shown.input.on_window_event(&shown.window, &event).repaint {
             shown.window.request_redraw();
+            self.input_due = true;
+            self.touched();
         }
     }
 
@@ -385,7 +411,8 @@ impl ApplicationHandler<Wake> for App {
             self.reload();
             self.request_redraw();
         }
-        let times = [self.repaint_at, self.watch.next_look()];
+        self.warm_up();
+        let times = [self.repaint_at, self.watch.next_look(), self.warm_up_at];
         event_loop.set_control_flow(match times.into_iter().flatten().min() {
             Some(at) => ControlFlow::WaitUntil(at),
             None => ControlFlow::Wait,

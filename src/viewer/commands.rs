@@ -246,7 +246,8 @@ pub const TABLE: &[Binding] = &[
         Command::Inspector,
         &[key(Key::I)],
         "Inspector",
-        "Show what lies under the cursor: radiance, samples, material, normal, depth.",
+        "Show what lies under the cursor: radiance, its standard error (from two independent halves, \
+         over the 5 × 5 pixels around), samples, material, normal, depth.",
     ),
     bind(
         Command::ZoomOut,

@@ -64,9 +64,12 @@ pub fn png(frame: &Frame, model: &Model, state: String) -> Result<Vec<u8>, Strin
 /// # Errors
 /// A sentence.
 pub fn exr(frame: &Frame, model: &Model, state: String) -> Result<Vec<u8>, String> {
+    // The whole comes first, if it was computed.
+    let first = usize::from(!frame.plan.whole);
     let layers: Vec<(&str, &[[f32; 3]])> = frame
         .layers
         .iter()
+        .skip(first)
         .map(|layer| (layer.label.as_str(), layer.pixels.as_slice()))
         .collect();
     exr_file::encode(frame.size, &layers, &texts(frame, model, state))

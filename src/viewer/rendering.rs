@@ -7,6 +7,7 @@ use glam::UVec2;
 
 use super::model::Model;
 use crate::engine::film::Frame;
+use crate::engine::integrators::Hold;
 use crate::engine::scene::Scene;
 use crate::engine::scene::desc::CameraDesc;
 use crate::engine::session::{RenderJob, RenderSession, Settings};
@@ -87,6 +88,11 @@ impl Rendering {
         }
         self.frame = Some(Arc::clone(&latest));
         Some(latest)
+    }
+
+    /// Makes the render stand still until the result is dropped.
+    pub fn hold(&self) -> Hold {
+        self.session.hold()
     }
 
     /// Pauses or goes on.

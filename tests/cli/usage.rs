@@ -19,6 +19,52 @@ fn wrong_usage_exits_with_2_and_says_what_would_be_right() {
     let shell = reference("cornell-diffuse/shell.obj");
     let s = scene.as_str();
     let cases: &[(&[&str], &str)] = &[
+        (
+            &["render", s, "-o", "a.exr", "--pyramid", "4"],
+            "--integrator bdpt",
+        ),
+        (
+            &[
+                "render",
+                s,
+                "-o",
+                "a.exr",
+                "--integrator",
+                "bdpt",
+                "--pyramid",
+                "1",
+            ],
+            "from 2 to 12",
+        ),
+        (
+            &[
+                "render",
+                s,
+                "-o",
+                "a.exr",
+                "--integrator",
+                "bdpt",
+                "--pyramid",
+                "4",
+                "--seconds",
+                "1",
+            ],
+            "--pyramid goes with",
+        ),
+        (
+            &[
+                "bench",
+                "integrators",
+                &reference_dir,
+                "--integrators",
+                "pth",
+            ],
+            "did you mean \"path\"?",
+        ),
+        (
+            &["bench", "integrators", &reference_dir, "--layer", "shade"],
+            "no layer \"shade\"",
+        ),
         (&["rendr"], "did you mean \"render\"?"),
         (
             &["no-such-scene"],

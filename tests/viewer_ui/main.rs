@@ -3,5 +3,7 @@
 
 mod controls;
 mod desk;
+mod expressions;
 mod files;
 mod hand;
+mod photons;

@@ -1,6 +1,8 @@
 //! `lightscope bench`: how fast this machine renders.
 
 mod first_frame;
+mod integrators;
+mod integrators_table;
 #[cfg(feature = "viewer")]
 mod latency;
 mod noise_bias;
@@ -15,6 +17,7 @@ use super::error::CliError;
 pub fn run(what: &Bench) -> Result<(), CliError> {
     match what {
         Bench::FirstFrame(args) => first_frame::run(args),
+        Bench::Integrators(args) => integrators::run(args),
         #[cfg(feature = "viewer")]
         Bench::Latency(args) => latency::run(args),
         Bench::NoiseBias(args) => noise_bias::run(args),

@@ -4,6 +4,7 @@ mod log;
 mod notes;
 mod options;
 mod progress;
+mod pyramid;
 mod stop;
 
 use std::sync::Arc;
@@ -28,6 +29,9 @@ use stop::State;
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), CliError> {
     let options = RenderOptions::new(&args)?;
+    if let Some(most) = args.pyramid {
+        return pyramid::run(&args, &options, most);
+    }
     let desc = scene::read(&args.scene)?;
     let size = options
         .size

@@ -55,6 +55,14 @@ pub struct Figures {
     cut_trees: u64,
     /// Rays of walks from the eye by the number of events before them, up to the last that has any.
     rays_by_level: Vec<u64>,
+    /// The same of walks from the lights.
+    light_rays_by_level: Vec<u64>,
+    /// Walks from the eye by the number of their events; absent for trees of rays.
+    walk_lengths: Option<Vec<u64>>,
+    /// Walks from the lights by the number of their events.
+    light_walk_lengths: Option<Vec<u64>>,
+    /// Share of the games of Russian roulette that walks survived.
+    roulette_survival: Option<f64>,
     /// Share of the mutations of Markov chains that were accepted.
     acceptance: Option<f64>,
     /// Against the reference.
@@ -64,6 +72,7 @@ pub struct Figures {
 
 /// The figures of a finished frame.
 pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
+    let [walk_lengths, light_walk_lengths] = frame.stats.lengths();
     let per_second = 1.0 / frame.t_wall.max(f64::MIN_POSITIVE);
     Figures {
         t_wall: frame.t_wall,
@@ -78,6 +87,10 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
         cut_paths: frame.stats.cut_paths,
         cut_trees: frame.stats.cut_trees,
         rays_by_level: frame.stats.levels().to_vec(),
+        light_rays_by_level: frame.stats.light_levels().to_vec(),
+        walk_lengths,
+        light_walk_lengths,
+        roulette_survival: frame.stats.survival(),
         acceptance: frame.stats.acceptance(),
         reference: reference.copied(),
     }
@@ -102,12 +115,26 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
         figure(f.mrays_per_second),
         figure(f.samples_per_second),
     );
-    if !f.rays_by_level.is_empty() {
-        let levels: Vec<String> = f.rays_by_level.iter().map(u64::to_string).collect();
-        eprintln!(
-            "rays from the eye after 0, 1, 2 … events: {}",
-            levels.join(" ")
-        );
+    let none = Vec::new();
+    for (what, counts) in [
+        ("rays from the eye after", &f.rays_by_level),
+        ("rays from the lights after", &f.light_rays_by_level),
+        (
+            "walks from the eye of",
+            f.walk_lengths.as_ref().unwrap_or(&none),
+        ),
+        (
+            "walks from the lights of",
+            f.light_walk_lengths.as_ref().unwrap_or(&none),
+        ),
+    ] {
+        if !counts.is_empty() {
+            let counts: Vec<String> = counts.iter().map(u64::to_string).collect();
+            eprintln!("{what} 0, 1, 2 … events: {}", counts.join(" "));
+        }
+    }
+    if let Some(survival) = f.roulette_survival {
+        eprintln!("roulette survived: {} %", figure(100.0 * survival));
     }
     if let Some(acceptance) = f.acceptance {
         eprintln!("accepted mutations: {} %", figure(100.0 * acceptance));

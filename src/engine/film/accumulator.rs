@@ -219,23 +219,11 @@ impl Film {
         if self.passes == 0 || out.is_empty() {
             return;
         }
-        let rows = size.x as usize * super::tiles::TILE as usize;
-        let columns = size.x.div_ceil(super::tiles::TILE) as usize;
-        out.par_chunks_mut(rows)
-            .enumerate()
-            .for_each(|(tile_row, rows)| {
-                let top = tile_row as u32 * super::tiles::TILE;
-                for t in tile_row * columns..(tile_row + 1) * columns {
-                    let tile = &self.data[t];
-                    for (place, pixel) in self.tiles.pixels(t) {
-                        let [even, odd] = tile.counts(place, self.passes);
-                        let scale = self.scale / (even + odd) as f64;
-                        let sum = tile.planes[plane][place];
-                        rows[((pixel.y - top) * size.x + pixel.x) as usize] =
-                            sum.map(|s| (s * scale) as f32);
-                    }
-                }
-            });
+        self.by_rows(out, |tile, place| {
+            let [even, odd] = tile.counts(place, self.passes);
+            let scale = self.scale / (even + odd) as f64;
+            tile.planes[plane][place].map(|s| (s * scale) as f32)
+        });
     }
 
     /// Means of the whole and of layer after layer; layers without a plane are zero.
@@ -255,6 +243,49 @@ impl Film {
                 layer.pixels.resize(layers_len(self.size()), [0.0; 3]);
             }
         }
+    }
+
+    /// Halved differences of the two halves of the whole, weighted so that their squares estimate
+    /// the variance of the mean; NaN in pixels that one half lacks. Empty before each half has a
+    /// pass.
+    pub fn resolve_differences(&self, out: &mut Vec<[f32; 3]>) {
+        out.clear();
+        if self.passes < 2 {
+            return;
+        }
+        let size = self.size();
+        out.resize(layers_len(size), [f32::NAN; 3]);
+        let halves = 1 + self.planned.count_ones() as usize;
+        self.by_rows(out, |tile, place| {
+            let [even, odd] = tile.counts(place, self.passes);
+            let (n_even, n_odd) = (even as f64, odd as f64);
+            let (total, half) = (tile.planes[0][place], tile.planes[halves][place]);
+            // Var(a − b) = σ²(1/nₑ + 1/nₒ), and the mean's variance is σ²/(nₑ + nₒ).
+            let weight = self.scale * (n_even * n_odd).sqrt() / (n_even + n_odd);
+            std::array::from_fn(|c| {
+                let difference = half[c] / n_even - (total[c] - half[c]) / n_odd;
+                (difference * weight) as f32
+            })
+        });
+    }
+
+    /// Writes what `value` says of each pixel, given its tile and its place there, to `out`, row
+    /// by row from the top.
+    fn by_rows(&self, out: &mut [[f32; 3]], value: impl Fn(&FilmTile, usize) -> [f32; 3] + Sync) {
+        let size = self.size();
+        let rows = size.x as usize * super::tiles::TILE as usize;
+        let columns = size.x.div_ceil(super::tiles::TILE) as usize;
+        out.par_chunks_mut(rows)
+            .enumerate()
+            .for_each(|(tile_row, rows)| {
+                let top = tile_row as u32 * super::tiles::TILE;
+                for t in tile_row * columns..(tile_row + 1) * columns {
+                    let tile = &self.data[t];
+                    for (place, pixel) in self.tiles.pixels(t) {
+                        rows[((pixel.y - top) * size.x + pixel.x) as usize] = value(tile, place);
+                    }
+                }
+            });
     }
 
     /// Estimated error of the whole, from its two halves. None before each half has a pass.

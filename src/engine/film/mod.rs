@@ -14,7 +14,7 @@ pub mod tiles;
 pub mod tonemap;
 
 pub use accumulator::Film;
-pub use frame::{Frame, FrameLayer};
+pub use frame::{Frame, FrameLayer, Memory};
 pub use halves::ErrorEstimate;
 pub use pass_buffer::PassBuffer;
 pub use sample::SampleRadiance;

@@ -154,6 +154,11 @@ impl Geometry {
         self.tree.spheres.len()
     }
 
+    /// Bytes of the tree that rays walk, of all that are held.
+    pub fn tree_bytes(&self) -> usize {
+        self.tree.memory_bytes()
+    }
+
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
         self.mesh.memory_bytes()

@@ -166,6 +166,10 @@ impl LightTracer {
 }
 
 impl Integrator for LightTracer {
+    fn memory_bytes(&self) -> usize {
+        self.splats.as_ref().map_or(0, SplatBuffer::bytes)
+    }
+
     fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
         let (size, planned) = (film.size(), cx.plan.planned);
         let mut splats = match self.splats.take() {

@@ -82,6 +82,11 @@ impl Integrator for Sppm {
         Ok(stats)
     }
 
+    fn memory_bytes(&self) -> usize {
+        let grid = self.tiled.estimator().grid.as_ref();
+        self.tiled.buffer_bytes() + grid.map_or(0, PhotonGrid::bytes)
+    }
+
     fn facts(&self) -> Vec<Fact> {
         let grid = self.tiled.estimator().grid.as_ref();
         grid.map(PhotonGrid::fact).into_iter().collect()
@@ -153,7 +158,7 @@ impl RayIntegrator for Estimator {
             }
             let suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
             walk = walk.after(&si, &sample, suffix, 1.0);
-            if cx.plan.is_pointless(suffix) || !walk.survives(self.roulette, roulette) {
+            if cx.plan.is_pointless(suffix) || !walk.survives(self.roulette, roulette, stats) {
                 return;
             }
             ray = si.spawn_ray(sample.wi);

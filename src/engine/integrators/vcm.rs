@@ -187,6 +187,10 @@ impl Integrator for Vcm {
         Ok(stats)
     }
 
+    fn memory_bytes(&self) -> usize {
+        self.bdpt.memory_bytes() + self.bdpt.photons().map_or(0, PhotonGrid::bytes)
+    }
+
     fn facts(&self) -> Vec<Fact> {
         self.bdpt
             .photons()

@@ -247,7 +247,7 @@ impl Whitted {
             };
             if !all {
                 let survival = next.kept.max_component().min(MAX_SURVIVAL);
-                if u.y >= survival {
+                if !stats.play(u.y < survival) {
                     continue;
                 }
                 next.throughput *= 1.0 / survival;

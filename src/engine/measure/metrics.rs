@@ -8,7 +8,7 @@
 use serde::Serialize;
 
 /// Added to r² in the relative error, so that black pixels do not count without bound.
-const RELMSE_FLOOR: f64 = 0.01;
+pub const RELMSE_FLOOR: f64 = 0.01;
 
 /// Figures for picture x against reference r.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -11,5 +11,5 @@ pub mod region;
 pub mod runs;
 
 pub use bias::unseen;
-pub use metrics::{Metrics, ReferenceNoise};
+pub use metrics::{Metrics, RELMSE_FLOOR, ReferenceNoise};
 pub use region::Region;

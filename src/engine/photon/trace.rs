@@ -69,6 +69,8 @@ pub trait Witness {
     fn stored(&mut self, photon: Photon, si: &SurfaceInteraction, u: f32);
     /// It travelled along `ray` to `si`, or left the scene.
     fn travelled(&mut self, _ray: &Ray, _si: Option<&SurfaceInteraction>) {}
+    /// It played roulette.
+    fn played(&mut self, _survived: bool) {}
     /// It was cut at the largest number of events.
     fn cut(&mut self) {}
 }
@@ -125,8 +127,9 @@ impl Walks<'_> {
             }
             class = self.classes.append(class, sample.event.letter());
             events += 1;
-            let Some(scattered) = self.survive(power, sample.weight, events, first_power, roulette)
-            else {
+            let scattered = self.survive(power, sample.weight, events, first_power, roulette);
+            to.played(scattered.is_some());
+            let Some(scattered) = scattered else {
                 return rays;
             };
             power = scattered;

@@ -8,7 +8,7 @@ use glam::UVec2;
 use super::clock::RenderClock;
 use super::job::{RenderJob, Settings};
 use crate::engine::camera::Camera;
-use crate::engine::film::{ErrorEstimate, Film, Frame};
+use crate::engine::film::{ErrorEstimate, Film, Frame, Memory};
 use crate::engine::integrators::{Cancel, Cancelled, Integrator, Params, Pass, RenderStats};
 use crate::engine::path::ExpressionError;
 use crate::engine::plan::RenderPlan;
@@ -191,6 +191,16 @@ impl Renderer {
         frame.t_wall = self.clock.wall();
         frame.t_cpu = self.clock.cpu();
         frame.stats = self.stats;
+        if coarse.is_none() {
+            film.resolve_differences(&mut frame.differences);
+        } else {
+            frame.differences.clear();
+        }
+        frame.memory = Memory {
+            film: self.film.bytes(),
+            integrator: self.integrator.memory_bytes(),
+        };
+        frame.threads = rayon::current_num_threads();
         frame.error_estimate = match coarse {
             None => film.error_estimate(),
             Some(_) => None,

@@ -10,6 +10,8 @@ use crate::viewer::workspace::Workspace;
 
 /// Distance from the corner in points.
 const MARGIN: f32 = 12.0;
+/// The standard error is that of the 5 × 5 pixels around: two halves of one pixel know little.
+const REACH: u32 = 2;
 
 /// Draws the values at `cursor`, in physical pixels of the picture's area, at the top right of
 /// `rect`.
@@ -66,6 +68,9 @@ fn values(workspace: &Workspace, cursor: Vec2) -> Option<Vec<(String, String)>> 
     for layer in &frame.layers {
         let rgb = layer.pixels.get(i)?;
         lines.push((layer.label.clone(), rgb.map(number).join(" ")));
+    }
+    if let Some(error) = frame.standard_error(held, REACH) {
+        lines.push(("± whole".to_owned(), error.map(number).join(" ")));
     }
     lines.push(("samples".to_owned(), frame.passes.to_string()));
     if let Some(hit) = picking::hit(workspace, cursor) {

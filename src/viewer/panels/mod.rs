@@ -5,6 +5,7 @@ mod browser;
 mod camera;
 mod components;
 mod display;
+mod expressions;
 mod gallery;
 mod hand;
 mod help;
@@ -12,12 +13,15 @@ mod inspector;
 mod notices;
 mod output;
 mod params;
+mod photon_lines;
+mod photons;
 mod picture;
 mod pixel_values;
 mod plan;
 mod scene;
 mod statistics;
 mod status;
+mod strategies;
 mod style;
 mod widgets;
 
@@ -32,9 +36,11 @@ pub use style::apply as apply_style;
 type Section = (&'static str, bool, fn(&mut Ui, &mut Workspace));
 
 /// The panel's sections from top to bottom.
-const SECTIONS: [Section; 6] = [
+const SECTIONS: [Section; 8] = [
     ("Algorithm", true, algorithm::show),
     ("Components", true, components::show),
+    ("Expressions", false, expressions::show),
+    ("Photons", false, photons::show),
     ("Display", true, display::show),
     ("Camera", false, camera::show),
     ("Save", true, output::show),
@@ -72,12 +78,14 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             .show(ui, |ui| side(ui, workspace));
         workspace.preferences.panel_width = panel.response.rect.width();
     }
+    photons::keep_up(ui, workspace);
     CentralPanel::no_frame().show(ui, |ui| picture::show(ui, workspace));
     notices::show(ui, workspace);
     help::show(ui, workspace);
     gallery::show(ui, workspace);
     browser::show(ui, workspace);
 
+    workspace.settle();
     let busy = workspace.navigating || ui.input(|i| i.pointer.any_down());
     workspace.history.observe(&workspace.model, busy);
 }
