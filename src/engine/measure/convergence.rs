@@ -112,9 +112,7 @@ pub fn predict(looks: &[Look], target: f64) -> Option<Prediction> {
     // Noise in few looks makes slopes of any kind: between the bounds of theory it does no harm.
     let slope = fit(recent.iter().map(|l| (l.passes as f64, l.error)))
         .filter(|_| recent.len() >= LOOKS)
-        .map_or(-0.5, |rate| {
-            rate.slope.clamp(*SLOPES.start(), *SLOPES.end())
-        });
+        .map_or(-0.5, |rate| pulled(rate.slope));
     let passes = now.passes * (last.error / target).powf(-1.0 / slope);
     let first = recent.first().filter(|l| l.passes < last.passes);
     let per_pass = first.map_or(now.seconds / now.passes, |l| {
