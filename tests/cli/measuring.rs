@@ -60,11 +60,8 @@ fn a_reference_knows_its_error_and_compare_reads_it() {
             >= 16
     );
 
-    render(
-        at,
-        "a.exr",
-        &["--spp", "4", "--size", "24x24", "--components"],
-    );
+    let args = ["render", &scene, "-o", "a.exr", "--components"];
+    succeeds(at, &[&args[..], &size].concat());
     let rows = json(at, &["compare", "a.exr", "ref24.exr", "--json"]);
     for row in rows.as_array().expect("rows") {
         assert!(row["reference_noise"]["rmse"].is_number(), "{row}");

@@ -65,7 +65,7 @@ pub fn html(options: &ReportOptions, store: &Store, report: &Report) -> Result<S
         ("seeds", format!("0 to {}", report.seeds - 1)),
         (
             "target",
-            format!("relative error {}", figure(report.target)),
+            format!("relative error {} %", report.target * 100.0),
         ),
         (
             "depth",
@@ -147,8 +147,8 @@ fn race(page: &mut String, options: &ReportOptions, scene: &SceneSummary) {
         page,
         "<h3>After {time}</h3><table><tr><th>integrator</th><th>error</th><th>seeds from – to</th>\
          <th>passes</th><th>slope</th><th>noise</th><th>bias</th><th>K</th>\
-         <th>error {} after</th></tr>",
-        figure(options.target)
+         <th>error {} % after</th></tr>",
+        options.target * 100.0
     );
     let cell = |x: Option<f64>| x.map_or("–".to_owned(), figure);
     for (i, c) in scene.integrators.iter().enumerate() {
@@ -162,7 +162,12 @@ fn race(page: &mut String, options: &ReportOptions, scene: &SceneSummary) {
         let band = c.race.band.map_or("–".to_owned(), |[low, high]| {
             format!("{} – {}", figure(low), figure(high))
         });
-        let (noise, bias) = (c.parts.map(|p| p.noise), c.parts.map(|p| p.bias));
+        let noise = c.parts.map(|p| p.noise);
+        let bias = match c.parts {
+            Some(parts) if c.bias_seen => figure(parts.bias),
+            Some(_) => "none seen".to_owned(),
+            None => "–".to_owned(),
+        };
         let _ = write!(
             page,
             "<tr{class}><td><span class=\"swatch\" style=\"background:rgb({r},{g},{b})\"></span>{}\
@@ -173,7 +178,7 @@ fn race(page: &mut String, options: &ReportOptions, scene: &SceneSummary) {
             c.race.passes,
             c.slope.map_or("–".to_owned(), |s| format!("{s:.2}")),
             cell(noise),
-            cell(bias),
+            bias,
             cell(c.k),
             target_time(c, options.target, scene),
         );
@@ -193,7 +198,8 @@ fn target_time(c: &Contestant, target: f64, scene: &SceneSummary) -> String {
         let rmse = run.points.last()?.rmse?;
         Some(parts.bias * error / rmse)
     });
-    let never = scene.reference.is_some() && c.unseen.is_some() && floor > Some(target);
+    let never =
+        scene.reference.is_some() && c.unseen.is_some() && c.bias_seen && floor > Some(target);
     match c.prediction {
         _ if never => "never: its bias is larger".to_owned(),
         Some(p) => duration(p.seconds),
@@ -239,7 +245,7 @@ fn notes(page: &mut String, scene: &SceneSummary) {
         let end = crate::engine::measure::convergence::fit(
             c.curve[late..].iter().map(|p| (p.pass as f64, p.error)),
         );
-        let biased = c.unseen.is_some() && scene.reference.is_some();
+        let biased = c.unseen.is_some() && c.bias_seen;
         if biased && c.curve.len() > 5 && end.is_some_and(|e| e.slope > LEVEL) {
             let bias = c.parts.map_or("–".to_owned(), |p| figure(p.bias));
             let _ = write!(

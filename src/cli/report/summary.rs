@@ -52,6 +52,8 @@ pub struct Contestant {
     pub race: Race,
     /// Noise and bias at the end, in units of radiance, where there is a reference.
     pub parts: Option<NoiseAndBias>,
+    /// Whether the error is more than its noise, the upper end of its interval, explains.
+    pub bias_seen: bool,
     /// When the relative error reaches the target.
     pub prediction: Option<Prediction>,
     /// 1000 · relMSE · t_cpu: smaller is better.
@@ -189,6 +191,9 @@ fn contestant(
             winner: false,
             close: false,
         },
+        bias_seen: squares(&|p| p.rmse)
+            .zip(squares(&|p| p.interval.map(|i| i[1])))
+            .is_some_and(|(rmse, most)| without_reference_noise(rmse, scale.noise) > most),
         // A biased method may never get there; what stays of its error says so.
         prediction: predict(&looks, options.target),
         parts,

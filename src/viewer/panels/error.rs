@@ -182,7 +182,9 @@ fn slope(ui: &mut Ui, workspace: &Workspace) {
         };
         let [r, g, b] = track.color;
         ui.horizontal(|ui| {
-            ui.colored_label(egui::Color32::from_rgb(r, g, b), "■");
+            let (at, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+            let color = egui::Color32::from_rgb(r, g, b);
+            ui.painter().rect_filled(at, 2.0, color);
             ui.label(format!("{}: slope {:.2}", track.label, rate.slope))
                 .on_hover_text("Fitted to error against samples; −0.5 for independent numbers.");
         });

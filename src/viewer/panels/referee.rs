@@ -128,7 +128,7 @@ fn findings(ui: &mut Ui, state: &State) {
         let doc = "Of the image means, in percent of the whole's.";
         for (head, doc) in [
             ("layer", "What is compared."),
-            ("difference", doc),
+            ("means differ by", doc),
             (
                 "would see",
                 "The smallest difference of the means that would have been found.",
