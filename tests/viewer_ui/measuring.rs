@@ -14,7 +14,7 @@ use lightscope::viewer::measuring::reference::Reference;
 use lightscope::viewer::measuring::{Along, Made, Over};
 use lightscope::viewer::workspace::Request;
 
-use crate::desk::{Desk, desk};
+use crate::desk::{Desk, desk_with_section};
 
 /// What the desk shows, rendered by another algorithm.
 fn made(desk: &Desk, integrator: &str) -> Made {
@@ -49,6 +49,7 @@ fn render(desk: &mut Desk, made: &Made, passes: u64) {
             !workspace.measuring.is_busy()
         });
     }
+    desk.run();
 }
 
 fn wait(mut done: impl FnMut() -> bool) {
@@ -60,11 +61,6 @@ fn wait(mut done: impl FnMut() -> bool) {
         );
         std::thread::sleep(Duration::from_millis(5));
     }
-}
-
-fn open(desk: &mut Desk, section: &str) {
-    desk.get_by_label(section).click();
-    desk.run();
 }
 
 /// Labels and numbers of points of the curves.
@@ -81,8 +77,7 @@ fn click(desk: &mut Desk, label: &str) {
 
 #[test]
 fn curves_of_one_view_pile_up_and_another_view_begins_anew() {
-    let mut desk = desk();
-    open(&mut desk, "Error");
+    let mut desk = desk_with_section("Error");
     assert!(desk.query_by_label("Error plot").is_some());
     let (path, light) = (made(&desk, "path"), made(&desk, "light"));
     render(&mut desk, &path, 8);
@@ -114,8 +109,7 @@ fn curves_of_one_view_pile_up_and_another_view_begins_anew() {
 
 #[test]
 fn the_plot_is_saved_in_three_formats_and_has_a_window_of_its_own() {
-    let mut desk = desk();
-    open(&mut desk, "Error");
+    let mut desk = desk_with_section("Error");
     let path = made(&desk, "path");
     render(&mut desk, &path, 4);
     for (label, extension) in [
@@ -154,8 +148,7 @@ fn the_plot_is_saved_in_three_formats_and_has_a_window_of_its_own() {
 
 #[test]
 fn a_reference_is_made_in_the_background_and_errors_are_shown_against_it() {
-    let mut desk = desk();
-    open(&mut desk, "Error");
+    let mut desk = desk_with_section("Error");
     let path = made(&desk, "path");
     render(&mut desk, &path, 4);
     desk.state_mut().measuring.maker_seconds = 1.0;
@@ -212,8 +205,7 @@ fn a_reference_is_made_in_the_background_and_errors_are_shown_against_it() {
 
 #[test]
 fn a_reference_is_opened_and_one_of_another_size_says_so() {
-    let mut desk = desk();
-    open(&mut desk, "Error");
+    let mut desk = desk_with_section("Error");
     let path = made(&desk, "path");
     render(&mut desk, &path, 2);
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference");
@@ -242,8 +234,7 @@ fn a_reference_is_opened_and_one_of_another_size_says_so() {
 
 #[test]
 fn the_referee_finds_agreement_and_difference() {
-    let mut desk = desk();
-    open(&mut desk, "Referee");
+    let mut desk = desk_with_section("Referee");
     let path = made(&desk, "path");
     render(&mut desk, &path, 2);
     for (opponent, differs) in [("bdpt", false), ("whitted", true)] {

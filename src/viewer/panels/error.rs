@@ -20,7 +20,7 @@ const MAKER_SECONDS: f64 = 30.0;
 pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     reference(ui, workspace);
     ui.add_space(4.0);
-    error_plot::show(ui, workspace, 190.0);
+    error_plot::show(ui, workspace, 190.0, false);
     ui.horizontal_wrapped(|ui| {
         let along = &mut workspace.measuring.along;
         for (choice, name) in [(Along::Seconds, "seconds"), (Along::Samples, "samples")] {

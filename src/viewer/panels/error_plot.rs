@@ -11,8 +11,8 @@ use egui_plot::{
 use crate::plot::{Chart, Curve};
 use crate::viewer::workspace::Workspace;
 
-/// Draws the plot, `height` points high.
-pub fn show(ui: &mut Ui, workspace: &Workspace, height: f32) {
+/// Draws the plot, `height` points high; with names if it is large.
+pub fn show(ui: &mut Ui, workspace: &Workspace, height: f32, large: bool) {
     let target = workspace.preferences.target_error;
     let chart = workspace.measuring.chart(target);
     let reached = workspace
@@ -23,9 +23,12 @@ pub fn show(ui: &mut Ui, workspace: &Workspace, height: f32) {
             crate::viewer::measuring::Along::Samples => p.passes,
         });
     let along = chart.x_label.clone();
-    let response = Plot::new(("error", height as i32))
-        .height(height)
-        .legend(Legend::default().position(Corner::LeftBottom))
+    let mut plot = Plot::new(("error", large)).height(height);
+    // In the panel names and colours stand below the plot.
+    if large {
+        plot = plot.legend(Legend::default().position(Corner::LeftBottom));
+    }
+    let response = plot
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_drag(false)
@@ -71,7 +74,7 @@ pub fn large(ui: &mut Ui, workspace: &mut Workspace) {
         .default_size([640.0, 440.0])
         .show(ui.ctx(), |ui| {
             let height = (ui.available_height() - 4.0).max(160.0);
-            show(ui, workspace, height);
+            show(ui, workspace, height, true);
         });
     workspace.measuring.large = open;
 }
@@ -126,12 +129,14 @@ fn decades(input: GridInput) -> Vec<GridMark> {
     // Bounds without any point are wide beyond use.
     let first = low.floor().max(-40.0) as i32;
     let last = high.ceil().min(40.0) as i32;
-    for decade in first..last {
+    for decade in first..=last {
         for step in 1..10u8 {
-            marks.push(GridMark {
-                value: f64::from(decade) + f64::from(step).log10(),
-                step_size: if step == 1 { 1.0 } else { 0.1 },
-            });
+            let value = f64::from(decade) + f64::from(step).log10();
+            // Marks beyond the ends would have their names drawn beside the plot.
+            if (low..=high).contains(&value) {
+                let step_size = if step == 1 { 1.0 } else { 0.1 };
+                marks.push(GridMark { value, step_size });
+            }
         }
     }
     marks
@@ -184,8 +189,9 @@ mod tests {
         let range = -1.2..=0.7;
         let names: Vec<String> = marks.iter().map(|m| power(*m, &range)).collect();
         let named: Vec<&String> = names.iter().filter(|n| !n.is_empty()).collect();
-        assert_eq!(named, ["0.01", "0.1", "1"]);
-        assert_eq!(marks.len(), 27);
+        assert_eq!(named, ["0.1", "1"]);
+        // 0.07, 0.08, 0.09, nine of 0.1 … 0.9, and 1 … 5.
+        assert_eq!(marks.len(), 17);
     }
 
     #[test]
