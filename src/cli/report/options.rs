@@ -67,7 +67,7 @@ impl Subject {
         let components = self.reference.as_ref().is_some_and(|r| r.layers.len() > 1);
         RenderJob {
             scene: Arc::clone(&self.scene),
-            camera: self.camera.clone(),
+            camera: self.camera,
             size: self.size,
             settings: Settings {
                 integrator,

@@ -105,11 +105,11 @@ pub fn record(
     }
 }
 
+type Compare = fn(&[[f32; 3]], &[[f32; 3]]) -> Option<Metrics>;
+
 fn point(subject: &Subject, frame: &Frame) -> Point {
     let pixels = &frame.layers[0].pixels;
-    let against = |f: fn(&[[f32; 3]], &[[f32; 3]]) -> Option<Metrics>| {
-        subject.whole().and_then(|r| f(pixels, &r.pixels))
-    };
+    let against = |f: Compare| subject.whole().and_then(|r| f(pixels, &r.pixels));
     let (all, most) = (against(Metrics::new), against(Metrics::without_worst));
     let estimate = frame.error_estimate;
     Point {

@@ -97,7 +97,7 @@ fn pulled(slope: f64) -> f64 {
 /// go by.
 pub fn predict(looks: &[Look], target: f64) -> Option<Prediction> {
     let last = looks.last().filter(|l| l.error > 0.0 && l.passes > 0)?;
-    if !(target > 0.0) {
+    if target.is_nan() || target <= 0.0 {
         return None;
     }
     let now = Prediction {

@@ -239,6 +239,9 @@ impl Referee {
     }
 }
 
+/// Mean and variance of the mean of each channel.
+type Channels = [(f64, f64); 3];
+
 /// Rate of each of `n` tests that together have `rate`.
 fn sidak(rate: f64, n: f64) -> f64 {
     -f64::exp_m1((-rate).ln_1p() / n)
@@ -277,7 +280,7 @@ fn finding(
     let (difference, se) = (mean_a - mean_b, (var_a + var_b).sqrt());
     let image = Test::new([var_a, var_b], runs, image_rate, whole);
     let floor = pooled(a, b);
-    let failed = |(a, b): &([(f64, f64); 3], [(f64, f64); 3])| {
+    let failed = |(a, b): &(Channels, Channels)| {
         (0..3).any(|c| {
             let variances = with_floor(&floor, c, a[c], b[c]);
             Test::new(variances, runs, block_rate, whole).fails(a[c].0 - b[c].0)

@@ -64,6 +64,16 @@ fn reference(ui: &mut Ui, workspace: &mut Workspace) {
                 .error
                 .map_or(String::new(), |e| format!(", own error {:.2} %", e * 100.0));
             ui.label(format!("Reference: {}{own}", reference.label));
+            let frame = workspace.frame.as_ref();
+            let noise = frame.and_then(|f| f.relative_error).filter(|_| suits);
+            if reference
+                .error
+                .zip(noise)
+                .is_some_and(|(own, e)| own > 0.5 * e)
+            {
+                let text = "Its own error is part of what is measured: give it more time.";
+                ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
+            }
             if !suits {
                 let [w, h] = reference.size.to_array();
                 let text = format!("It is of another picture ({w} × {h}): errors are estimated.");
