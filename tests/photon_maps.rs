@@ -173,9 +173,7 @@ fn aimed_photons_carry_the_power_of_those_sent_everywhere() {
         lamp
     };
     let mut panel = quad(2, Vec3::new(1.0, 4.0, 0.0), Vec3::X, Vec3::Z);
-    panel.emission = Some(lightscope::engine::scene::desc::ColorDesc::Constant(
-        Rgb::splat(9.0),
-    ));
+    panel.emission = Some(Rgb::splat(9.0));
     let spot = LightDesc::Spot {
         position: Vec3::new(-1.0, 4.0, 0.5),
         direction: Vec3::new(1.0, -1.5, 0.0),

@@ -1,13 +1,17 @@
 //! Arguments as they are typed.
 
+mod measuring;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::UVec2;
 
 use crate::engine::film::ToneMap;
+use crate::engine::measure::Region;
 
 use super::suggest::did_you_mean;
+pub use measuring::{ReferenceArgs, ReportArgs};
 
 /// Renders scenes by global illumination. Without a command it opens the window.
 #[derive(Debug, Parser)]
@@ -27,6 +31,10 @@ pub enum Command {
     Render(RenderArgs),
     /// Compare a picture with a reference, layer by layer.
     Compare(CompareArgs),
+    /// Measure algorithms against each other and write a page about it.
+    Report(ReportArgs),
+    /// Render a reference: a picture whose standard error is known pixel by pixel.
+    Reference(ReferenceArgs),
     /// List what there is to choose from.
     List(ListArgs),
     /// Say what a scene or a picture holds.
@@ -120,6 +128,9 @@ pub struct CompareArgs {
     /// The reference: a picture, or a folder with ref.exr, direct.exr, …
     #[arg(value_name = "B")]
     pub reference: PathBuf,
+    /// Compare a part of the pictures alone: left top pixel and size, such as 10,20,64x48.
+    #[arg(long, value_name = "X,Y,WxH")]
+    pub region: Option<Region>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

@@ -13,7 +13,9 @@ mod info;
 mod list;
 mod picture;
 mod print;
+mod reference;
 mod render;
+mod report;
 mod scene;
 mod suggest;
 
@@ -55,6 +57,8 @@ fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
         Some(Command::Render(args)) => render::run(args),
         Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Report(args)) => report::run(&args),
+        Some(Command::Reference(args)) => reference::run(&args),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args.what),

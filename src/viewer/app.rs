@@ -12,6 +12,7 @@ use winit::window::{Fullscreen, WindowId};
 
 use super::ViewError;
 use super::loader::Loader;
+use super::measuring::background::Waker;
 use super::opening::Opening;
 use super::panels;
 use super::preferences::{self, Preferences};
@@ -99,6 +100,7 @@ impl App {
         let rendering = Rendering::new(wake(&proxy, || Wake::Frame)).map_err(ViewError::Failed)?;
         let context = egui::Context::default();
         panels::apply_style(&context);
+        let waker = Waker::new(wake(&proxy, || Wake::Frame));
         let mut app = Self {
             workspace: Workspace::new(opening.source.clone()),
             loader: Loader::new(wake(&proxy, || Wake::Loaded)),
@@ -118,6 +120,7 @@ impl App {
             clipboard: None,
             error: None,
         };
+        app.workspace.measuring.waker = waker;
         app.load(opening, Some(read), false);
         Ok(app)
     }
@@ -203,7 +206,11 @@ impl App {
             self.set_title();
         }
         if let Some(frame) = self.rendering.new_frame() {
-            self.workspace.show_frame(frame);
+            let made = self.rendering.made(&frame);
+            self.workspace.show_frame(Arc::clone(&frame));
+            if let Some(made) = made {
+                self.workspace.measuring.observe(made, &frame);
+            }
         }
     }
 
@@ -292,6 +299,7 @@ impl App {
                 Request::Reload => self.reload(),
                 Request::SaveAs(path) => self.save_as(path),
                 Request::Save(format) => self.save(format),
+                Request::SavePlot(extension) => self.save_plot(extension),
                 Request::SaveWindow => {
                     self.capture = true;
                     self.request_redraw();

@@ -50,6 +50,8 @@ pub enum Command {
     Inspector,
     /// The whole picture again, after a look at its pixels.
     ZoomOut,
+    /// Show or hide the plot of errors.
+    ErrorPlot,
     /// Show or hide the panel.
     Panel,
     /// Light or dark.
@@ -254,6 +256,12 @@ pub const TABLE: &[Binding] = &[
         &[key(Key::Z)],
         "Zoom out",
         "Show the whole picture again after Ctrl + wheel has magnified its pixels.",
+    ),
+    bind(
+        Command::ErrorPlot,
+        &[key(Key::M)],
+        "Error plot",
+        "Show or hide error against time in a window of its own.",
     ),
     bind(
         Command::Panel,

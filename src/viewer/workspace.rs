@@ -14,6 +14,7 @@ use super::display::{EXPOSURES, Shown};
 use super::exposure::auto_exposure;
 use super::gpu::{Placement, picture_point};
 use super::history::History;
+use super::measuring::Measuring;
 use super::model::Model;
 use super::navigation;
 use super::notices::Notices;
@@ -42,6 +43,8 @@ pub enum Request {
     Reload,
     /// Save under a new name.
     Save(Format),
+    /// Save the plot of errors under a new name that ends so: png, svg or csv.
+    SavePlot(&'static str),
     /// Save the whole window.
     SaveWindow,
     /// Copy the picture to the clipboard.
@@ -127,6 +130,8 @@ pub struct Workspace {
     pub inspector: bool,
     /// What is shown of photon maps.
     pub photons: Photons,
+    /// How wrong the picture is.
+    pub measuring: Measuring,
     /// A file is being chosen.
     pub browser: Option<Browser>,
     /// Hash of the scene file as it was read.
@@ -164,6 +169,7 @@ impl Workspace {
             textures: BTreeMap::new(),
             inspector: false,
             photons: Photons::default(),
+            measuring: Measuring::default(),
             browser: None,
             scene_hash: String::new(),
             preferences: Preferences::default(),
@@ -207,9 +213,10 @@ impl Workspace {
         }
     }
 
-    fn choose_file(&mut self, purpose: Purpose) {
+    /// Lets the user choose a file.
+    pub fn choose_file(&mut self, purpose: Purpose) {
         let name = match purpose {
-            Purpose::Open => String::new(),
+            Purpose::Open | Purpose::Reference => String::new(),
             Purpose::Save => format!("{}.png", self.proposed_stem()),
         };
         let recent = self
@@ -218,7 +225,7 @@ impl Workspace {
             .first()
             .and_then(|path| path.parent());
         let folder = match purpose {
-            Purpose::Open => recent.unwrap_or(Path::new(".")).to_owned(),
+            Purpose::Open | Purpose::Reference => recent.unwrap_or(Path::new(".")).to_owned(),
             Purpose::Save => PathBuf::from("."),
         };
         self.browser = Some(Browser::new(purpose, &folder, &name));
@@ -356,6 +363,7 @@ impl Workspace {
             Command::Redo => self.history.redo(&mut self.model),
             Command::Home => self.model.view = self.model.home,
             Command::Pause => self.paused = !self.paused,
+            Command::ErrorPlot => self.measuring.large = !self.measuring.large,
             Command::Panel => self.preferences.panel = !self.preferences.panel,
             Command::Help => self.help = !self.help,
             Command::Theme => self.preferences.dark = !self.preferences.dark,

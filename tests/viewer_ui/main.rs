@@ -6,4 +6,5 @@ mod desk;
 mod expressions;
 mod files;
 mod hand;
+mod measuring;
 mod photons;

@@ -24,7 +24,7 @@ use crate::engine::measure::Metrics;
 use crate::engine::scene::SceneDesc;
 use crate::engine::session::{RenderClock, RenderJob, Renderer};
 use log::Log;
-pub use options::RenderOptions;
+pub use options::{RenderOptions, expressions};
 use progress::Progress;
 use stop::State;
 
@@ -81,10 +81,8 @@ fn render(
             break;
         }
         log.pass(&mut renderer)?;
-        let state = State::of(
-            &mut renderer,
-            options.stop.error.is_some() || progress.is_due(),
-        );
+        let look = options.stop.looks_at(renderer.passes()) || progress.is_due();
+        let state = State::of(&mut renderer, look);
         progress.update(&state);
         if let Some(note) = options.stop.reached(&state) {
             progress.clear();
@@ -165,7 +163,7 @@ pub(super) fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, CliError>
 }
 
 /// A token that Ctrl-C cancels. A second Ctrl-C ends the program at once.
-fn cancel_on_interrupt() -> Result<Cancel, CliError> {
+pub(super) fn cancel_on_interrupt() -> Result<Cancel, CliError> {
     let newest = Arc::new(AtomicU64::new(0));
     let cancel = Cancel::new(Arc::clone(&newest), 0);
     let handler = move || {

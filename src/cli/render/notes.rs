@@ -7,7 +7,7 @@ use crate::cli::print::note;
 use crate::cli::scene::parameter_text;
 use crate::engine::film::Frame;
 use crate::engine::integrators::BadSample;
-use crate::engine::measure::Metrics;
+use crate::engine::measure::{Metrics, unseen};
 use crate::engine::plan::RenderPlan;
 use crate::engine::session::RenderJob;
 
@@ -21,6 +21,9 @@ pub fn print_before(job: &RenderJob, plan: &RenderPlan, threads: usize) {
         job.scene.name,
         settings.seed
     );
+    if let Some(unseen) = unseen(settings.integrator.id, &settings.params) {
+        note!("note: the estimated error is noise alone; {unseen}");
+    }
     for warning in &job.scene.warnings {
         note!("warning: {warning}");
     }
@@ -47,6 +50,8 @@ pub struct Figures {
     samples_per_second: f64,
     /// Estimated RMSE / image mean.
     error: Option<f64>,
+    /// Its 95 % interval.
+    error_interval: Option<[f64; 2]>,
     non_finite: u64,
     cut_paths: u64,
     /// Trees of rays cut at their largest number.
@@ -80,6 +85,7 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
         mrays_per_second: frame.stats.rays as f64 * per_second * 1e-6,
         samples_per_second: frame.stats.samples as f64 * per_second,
         error: frame.relative_error,
+        error_interval: frame.error_estimate.and_then(|e| e.relative_interval()),
         non_finite: frame.stats.non_finite,
         cut_paths: frame.stats.cut_paths,
         cut_trees: frame.stats.cut_trees,
@@ -96,7 +102,13 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
 /// The figures, and what went wrong on the way.
 pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
     let f = figures(frame, reference);
-    let error = f.error.map_or("unknown".to_owned(), figure);
+    let interval = f.error_interval.map(|i| i.map(figure));
+    let error = f
+        .error
+        .zip(interval)
+        .map_or("unknown".to_owned(), |(e, [low, high])| {
+            format!("{} (95 %: {low} to {high})", figure(e))
+        });
     note!(
         "t_wall {} s, t_cpu {} s, {} spp, {} rays, {} Mrays/s, {} samples/s, error {error}",
         figure(f.t_wall),

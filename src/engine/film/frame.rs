@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use super::halves::ErrorEstimate;
 use crate::engine::integrators::{Fact, PhotonView, RenderStats};
 use crate::engine::plan::RenderPlan;
 
@@ -55,6 +56,8 @@ pub struct Frame {
     pub stats: RenderStats,
     /// Estimated RMSE / image mean, where two independent halves exist.
     pub relative_error: Option<f64>,
+    /// The same with its interval, in units of radiance.
+    pub error_estimate: Option<ErrorEstimate>,
     /// What is computed and what was left out.
     pub plan: Arc<RenderPlan>,
     /// A path-traced picture that stands in while the integrator cannot deliver one.
@@ -85,6 +88,7 @@ impl Frame {
             threads: 0,
             stats: RenderStats::default(),
             relative_error: None,
+            error_estimate: None,
             plan,
             preview: false,
             facts: Vec::new(),

@@ -3,6 +3,7 @@
 use egui::{Align2, Button, Key, ScrollArea, TextEdit, Ui, Window};
 
 use crate::viewer::browser::{Browser, Entry, Purpose};
+use crate::viewer::measuring::reference::Reference;
 use crate::viewer::workspace::{Request, Workspace};
 
 /// Size of the window in points.
@@ -15,6 +16,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     };
     let title = match browser.purpose {
         Purpose::Open => "Open a scene, a state or a screenshot",
+        Purpose::Reference => "Open a reference (.exr, .hdr)",
         Purpose::Save => "Save picture (.png, .exr) or state (.json)",
     };
     let mut open = true;
@@ -45,8 +47,16 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         Some(path) if browser.purpose == Purpose::Open => {
             workspace.requests.push(Request::Open(path))
         }
+        Some(path) if browser.purpose == Purpose::Reference => open_reference(workspace, &path),
         Some(path) => workspace.requests.push(Request::SaveAs(path)),
         None => workspace.browser = Some(browser),
+    }
+}
+
+fn open_reference(workspace: &mut Workspace, path: &std::path::Path) {
+    match Reference::open(path) {
+        Ok(reference) => workspace.measuring.set_reference(reference),
+        Err(sentence) => workspace.notices.set_error("reference", sentence),
     }
 }
 
@@ -152,7 +162,7 @@ fn name(ui: &mut Ui, browser: &mut Browser, answer: &mut Answer) {
     }
     ui.horizontal(|ui| {
         let verb = match browser.purpose {
-            Purpose::Open => "Open file",
+            Purpose::Open | Purpose::Reference => "Open file",
             Purpose::Save => "Save file",
         };
         if ui.add(Button::new(verb)).clicked() {

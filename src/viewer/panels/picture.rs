@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Rect, Sense, Ui, vec2};
 use glam::{UVec2, Vec2};
 
-use super::{hand, inspector, photon_lines, pixel_values};
+use super::{hand, inspector, overlay, photon_lines, pixel_values};
 use crate::viewer::display::Tile;
 use crate::viewer::gpu::PictureCallback;
 use crate::viewer::photons;
@@ -42,6 +42,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         labels(ui, rect, &workspace.model.display.tiles());
         pixel_values::show(ui, workspace, rect);
     }
+    overlay::show(ui, workspace, rect);
     let cursor = response.hover_pos().map(|at| (at - rect.min) * scale);
     inspector::show(ui, workspace, rect, cursor.map(|c| Vec2::new(c.x, c.y)));
 }
