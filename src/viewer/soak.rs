@@ -68,10 +68,10 @@ pub struct Report {
 }
 
 impl Report {
-    /// Medians of the memory of the first and of the second half of the rounds. The first round
-    /// counts for nothing: everything is used first then.
+    /// Medians of the memory of the first and of the second half of the rounds after the first
+    /// third, which counts for nothing: most is used for the first time then.
     pub fn halves(&self) -> Option<[u64; 2]> {
-        let rounds = self.memory.get(1..)?;
+        let rounds = self.memory.get(self.memory.len().div_ceil(3)..)?;
         let (first, second) = rounds.split_at(rounds.len() / 2);
         Some([median(first)?, median(second)?])
     }
@@ -103,7 +103,7 @@ impl fmt::Display for Report {
         match self.halves() {
             Some([first, second]) => writeln!(
                 f,
-                "memory at rest: median of the first half {:.0} MiB, of the second {:.0} MiB: {}",
+                "memory at rest after a third of the time: median of one half {:.0} MiB, of the other {:.0} MiB: {}",
                 mb(first),
                 mb(second),
                 if self.is_flat() { "flat" } else { "it grows" }

@@ -91,6 +91,8 @@ fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static>
     wgpu::DeviceDescriptor {
         label: Some("lightscope"),
         required_limits: adapter.limits(),
+        // A handful of buffers that live long: blocks of 128 MiB in store would stay empty.
+        memory_hints: wgpu::MemoryHints::MemoryUsage,
         ..wgpu::DeviceDescriptor::default()
     }
 }

@@ -1,5 +1,6 @@
 //! The window that shows folders.
 
+use egui::text::{CCursor, CCursorRange};
 use egui::{Align2, Button, Key, ScrollArea, TextEdit, Ui, Window};
 
 use crate::viewer::browser::{Browser, Entry, Purpose};
@@ -143,6 +144,7 @@ fn name(ui: &mut Ui, browser: &mut Browser, answer: &mut Answer) {
         let response = ui.add(edit).labelled_by(label.id);
         if std::mem::take(&mut browser.fresh) {
             response.request_focus();
+            select_stem(ui, response.id, &browser.name);
         }
         if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
             *answer = Answer::Accept;
@@ -172,4 +174,14 @@ fn name(ui: &mut Ui, browser: &mut Browser, answer: &mut Answer) {
             *answer = Answer::Cancel;
         }
     });
+}
+
+/// Selects a proposed name without its extension: what is typed replaces it.
+fn select_stem(ui: &Ui, id: egui::Id, name: &str) {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+    let (start, end) = (CCursor::new(0), CCursor::new(stem.chars().count()));
+    let range = CCursorRange::two(start, end);
+    state.cursor.set_char_range(Some(range));
+    state.store(ui.ctx(), id);
 }

@@ -146,7 +146,7 @@ fn time_to(frame: &Frame, target: f64) -> String {
 fn faults(ui: &mut Ui, frame: &Frame) {
     let count = frame.stats.non_finite.to_string();
     let doc = "Samples whose radiance was NaN or infinite: counted, never averaged in.";
-    figure(ui, "No numbers", count, doc);
+    figure(ui, "Not finite", count, doc);
     if let Some(first) = frame.stats.first_non_finite {
         let text = format!(
             "pixel {} {}, pass {}",
