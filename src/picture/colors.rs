@@ -13,6 +13,7 @@ const VIRIDIS: [[f32; 3]; 9] = [
     [0.993, 0.906, 0.144],
 ];
 /// From blue over white to red, after the scale RdBu of Brewer and Harrower (2002).
+#[cfg(any(feature = "viewer", test))]
 const BLUE_RED: [[f32; 3]; 9] = [
     [0.020, 0.188, 0.380],
     [0.129, 0.400, 0.674],
@@ -33,6 +34,7 @@ pub fn viridis(x: f32) -> [u8; 3] {
 }
 
 /// The colour of a signed value, −1 (blue) to 1 (red); 0 is white.
+#[cfg(any(feature = "viewer", test))]
 pub fn blue_red(x: f32) -> [u8; 3] {
     at(&BLUE_RED, 0.5 + 0.5 * x)
 }

@@ -6,7 +6,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{
     BLACK, ChartBuilder, Circle, Color, DashedLineSeries, DrawingArea, DrawingBackend,
     IntoDrawingArea, IntoFont, IntoLogRange, LineSeries, PathElement, Polygon, RGBColor,
-    SVGBackend, SeriesLabelPosition, ShapeStyle, Text, WHITE,
+    SVGBackend, SeriesLabelPosition, ShapeStyle, TRANSPARENT, Text, WHITE,
 };
 
 use super::{Chart, Curve, is_shown};
@@ -86,7 +86,7 @@ where
         .build_cartesian_2d((x[0]..x[1]).log_scale(), (y[0]..y[1]).log_scale())?;
     axes.configure_mesh()
         .bold_line_style(PALE)
-        .light_line_style(PALE.mix(0.5))
+        .light_line_style(TRANSPARENT)
         .x_desc(&chart.x_label)
         .y_desc(&chart.y_label)
         .label_style((FAMILY, 13))

@@ -2,6 +2,7 @@
 
 mod draw;
 
+#[cfg(any(feature = "viewer", test))]
 use std::fmt::Write;
 
 #[cfg(feature = "viewer")]
@@ -54,7 +55,17 @@ impl Chart {
         }
         let wide = |[low, high]: [f64; 2]| {
             let margin = (high / low).powf(0.05).max(1.1);
-            [low / margin, high * margin]
+            let [low, high] = [low / margin, high * margin];
+            // Only powers of ten have marks: less than two of them are no scale.
+            let (first, last) = (low.log10().ceil(), high.log10().floor());
+            if last - first < 1.0 {
+                [
+                    10f64.powf(low.log10().floor()),
+                    10f64.powf(high.log10().ceil()),
+                ]
+            } else {
+                [low, high]
+            }
         };
         (ranges[0][1] > 0.0).then(|| ranges.map(wide))
     }
@@ -72,6 +83,7 @@ impl Chart {
     }
 
     /// The curves as a table, a line a point.
+    #[cfg(any(feature = "viewer", test))]
     pub fn csv(&self) -> String {
         let mut text = format!(
             "curve,{},{},low,high\n",
