@@ -5,5 +5,6 @@
 pub mod cli;
 pub mod engine;
 mod picture;
+mod plot;
 #[cfg(feature = "viewer")]
 pub mod viewer;

@@ -328,14 +328,17 @@ const PARTITIONS: [&[&str]; 5] = [
 #[test]
 fn layers_add_up_to_the_whole_in_every_integrator() {
     let scene = scene_from_toml(&things("", true, true, ""));
-    for entry in REGISTRY {
-        let base = job(&scene, entry.id, &[]);
+    // Gathers, and records interpolated between, carry classes of their own.
+    let gathers = ["gather", "cache"].map(|way| ("photon", vec![("indirect", way)]));
+    let defaults = REGISTRY.iter().map(|entry| (entry.id, vec![]));
+    for (id, set) in defaults.chain(gathers) {
+        let base = job(&scene, id, &set);
         let frame = render(&base, 2);
-        assert!(gap(&frame, 1..5) < 1e-5, "{}: components", entry.id);
+        assert!(gap(&frame, 1..5) < 1e-5, "{id} {set:?}: components");
         for partition in PARTITIONS {
             let frame = render(&with_expressions(base.clone(), partition), 2);
             let off = gap(&frame, EXPR1..EXPR1 + partition.len());
-            assert!(off < 1e-5, "{} {partition:?}: {off}", entry.id);
+            assert!(off < 1e-5, "{id} {set:?} {partition:?}: {off}");
         }
     }
 }

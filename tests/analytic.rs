@@ -9,7 +9,7 @@ use glam::Vec3;
 use lightscope::engine::io;
 use lightscope::engine::math::Rgb;
 use lightscope::engine::scene::Scene;
-use lightscope::engine::scene::desc::{CameraDesc, ColorDesc, MeshDesc, SceneDesc};
+use lightscope::engine::scene::desc::{CameraDesc, MeshDesc, SceneDesc};
 use support::agreement::mean;
 use support::render::{job, render, scene_from_toml};
 
@@ -203,7 +203,7 @@ fn plate_of_glass() {
             desc.meshes.push(square(Vec3::Y * y, u, v, glass));
         }
         let mut lamp = square(Vec3::Y * -2.0, Vec3::Z * 50.0, Vec3::X * 50.0, black);
-        lamp.emission = Some(ColorDesc::Constant(Rgb::splat(2.0)));
+        lamp.emission = Some(Rgb::splat(2.0));
         desc.meshes.push(lamp);
         let r = ((f64::from(n) - 1.0) / (f64::from(n) + 1.0)).powi(2);
         let exact = 2.0 * (1.0 - r).powi(2) / (1.0 - r * r);

@@ -1,13 +1,17 @@
 //! Arguments as they are typed.
 
+mod measuring;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::UVec2;
 
 use crate::engine::film::ToneMap;
+use crate::engine::measure::Region;
 
 use super::suggest::did_you_mean;
+pub use measuring::{ReferenceArgs, ReportArgs};
 
 /// Renders scenes by global illumination. Without a command it opens the window.
 #[derive(Debug, Parser)]
@@ -27,6 +31,10 @@ pub enum Command {
     Render(RenderArgs),
     /// Compare a picture with a reference, layer by layer.
     Compare(CompareArgs),
+    /// Measure algorithms against each other and write a page about it.
+    Report(ReportArgs),
+    /// Render a reference: a picture whose standard error is known pixel by pixel.
+    Reference(ReferenceArgs),
     /// List what there is to choose from.
     List(ListArgs),
     /// Say what a scene or a picture holds.
@@ -84,12 +92,13 @@ pub struct RenderArgs {
     #[arg(
         long,
         value_name = "N",
-        default_value_t = 0,
+        default_value = "0",
+        value_parser = seed,
         allow_negative_numbers = true
     )]
     pub seed: u64,
     /// Most scattering events of a path; 0 shows emitters only [default: unlimited].
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = depth, allow_negative_numbers = true)]
     pub max_depth: Option<u32>,
     /// Exposure of a PNG in stops.
     #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = exposure, allow_negative_numbers = true)]
@@ -104,6 +113,10 @@ pub struct RenderArgs {
     /// reference.
     #[arg(long, value_name = "FILE.jsonl")]
     pub log: Option<PathBuf>,
+    /// Instead of the picture write those of every strategy of bidirectional path tracing, weighted
+    /// and unweighted, for paths of up to N vertices: layers of an EXR, or a sheet as PNG.
+    #[arg(long, value_name = "N", value_parser = vertices, allow_negative_numbers = true)]
+    pub pyramid: Option<u64>,
     /// Print the final figures as JSON.
     #[arg(long)]
     pub json: bool,
@@ -118,6 +131,9 @@ pub struct CompareArgs {
     /// The reference: a picture, or a folder with ref.exr, direct.exr, …
     #[arg(value_name = "B")]
     pub reference: PathBuf,
+    /// Compare a part of the pictures alone: left top pixel and size, such as 10,20,64x48.
+    #[arg(long, value_name = "X,Y,WxH")]
+    pub region: Option<Region>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
@@ -167,6 +183,8 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Time from a change of camera to the first picture.
     FirstFrame(FirstFrameArgs),
+    /// Error of every integrator after the same time, on scenes with references.
+    Integrators(BenchIntegratorsArgs),
     /// What a user of the window waits for: camera to picture, input to answer of the panels.
     #[cfg(feature = "viewer")]
     Latency(FirstFrameArgs),
@@ -178,6 +196,21 @@ pub enum Bench {
     Rays(BenchRaysArgs),
     /// Error against time on scenes with references, single-threaded.
     Scenes(BenchScenesArgs),
+    /// A random hand plays with the window: nothing may fail and memory must not grow.
+    #[cfg(feature = "viewer")]
+    Soak(BenchSoakArgs),
+}
+
+/// Arguments of `bench soak`.
+#[cfg(feature = "viewer")]
+#[derive(Debug, Args)]
+pub struct BenchSoakArgs {
+    /// How long, in seconds.
+    #[arg(long, value_name = "T", default_value = "600", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub seconds: u64,
+    /// Seed of what the hand does.
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub seed: u64,
 }
 
 /// Arguments of `bench first-frame` and `bench latency`.
@@ -195,6 +228,42 @@ pub struct FirstFrameArgs {
     /// Threads; 0 is one a core.
     #[arg(long, value_name = "N", default_value = "0", value_parser = threads, allow_negative_numbers = true)]
     pub threads: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench integrators`.
+#[derive(Debug, Args)]
+pub struct BenchIntegratorsArgs {
+    /// Folders with scene.json and ref.exr, or pairs of a scene and its reference.
+    #[arg(required = true, value_name = "DIR|SCENE=REF.exr")]
+    pub scenes: Vec<String>,
+    /// Seconds of each render by the clock; of several, one render is looked at after each.
+    #[arg(long, value_name = "T,T…", value_delimiter = ',', default_value = "30", value_parser = positive, allow_negative_numbers = true)]
+    pub seconds: Vec<f64>,
+    /// Threads; 0 is one a core.
+    #[arg(long, value_name = "N", default_value = "2", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: usize,
+    /// Algorithms [default: all].
+    #[arg(long, value_name = "ID,ID…", value_delimiter = ',')]
+    pub integrators: Vec<String>,
+    /// Parameter of one algorithm, such as photon.fresh-maps=on; may be repeated.
+    #[arg(long, value_name = "ID.NAME=VALUE")]
+    pub set: Vec<String>,
+    /// What is compared: whole, direct, specular, caustic or indirect.
+    #[arg(long, value_name = "LAYER", default_value = "whole")]
+    pub layer: String,
+    /// Compare the paths of an expression that the references hold as a layer, and compute these
+    /// alone.
+    #[arg(long, value_name = "EXPR", conflicts_with = "layer")]
+    pub expression: Option<String>,
+    /// Show K = 1000 · relMSE · CPU seconds in place of relMSE.
+    #[arg(long)]
+    pub efficiency: bool,
+    /// Independent maps from which `photon` reports its own bias; 0: no report.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = maps, allow_negative_numbers = true)]
+    pub bias_maps: u32,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
@@ -285,10 +354,36 @@ const MAX_PIXELS: u64 = 1 << 26;
 /// Most threads; more than any machine has cores.
 const MAX_THREADS: usize = 1024;
 
+fn seed(text: &str) -> Result<u64, String> {
+    let right = "it must be a whole number from 0 to 18446744073709551615";
+    text.parse().map_err(|_| right.to_owned())
+}
+
+fn depth(text: &str) -> Result<u32, String> {
+    let right = "it must be a whole number of events, from 0 to 4294967295";
+    text.parse().map_err(|_| right.to_owned())
+}
+
 fn at_least_one(text: &str) -> Result<u64, String> {
     match text.parse() {
         Ok(n) if n >= 1 => Ok(n),
         _ => Err("it must be a whole number of at least 1".to_owned()),
+    }
+}
+
+/// The longest paths of a pyramid: n vertices have n strategies.
+fn vertices(text: &str) -> Result<u64, String> {
+    match text.parse() {
+        Ok(n) if (2..=12).contains(&n) => Ok(n),
+        _ => Err("it must be a whole number from 2 to 12".to_owned()),
+    }
+}
+
+/// None, or enough to know the spread of.
+fn maps(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(n) if n == 0 || (2..=10_000).contains(&n) => Ok(n),
+        _ => Err("it must be 0 or a whole number from 2 to 10000".to_owned()),
     }
 }
 

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::args::CompareArgs;
 use super::error::CliError;
-use super::picture::{self, Layer};
+use super::picture::{self, Layer, Picture};
 use super::print::{self, figure};
-use crate::engine::measure::{Metrics, ReferenceNoise};
+use crate::engine::measure::{Metrics, ReferenceNoise, Region};
 
 /// Runs the command.
 pub fn run(args: &CompareArgs) -> Result<(), CliError> {
@@ -20,14 +20,15 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
             args.reference.display()
         )));
     }
+    let region = args.region.as_ref();
     let rows: Vec<Row> = image
         .layers
         .iter()
         .filter_map(|layer| {
             let partner = reference.layers.iter().find(|r| r.key() == layer.key())?;
-            row(layer, partner, &reference.standard_errors)
+            row(layer, partner, &reference, region).transpose()
         })
-        .collect();
+        .collect::<Result<_, CliError>>()?;
     if rows.is_empty() {
         return Err(CliError::usage(format!(
             "{} and {} have no layer of finite pixels in common",
@@ -47,19 +48,41 @@ struct Row {
     layer: String,
     #[serde(flatten)]
     metrics: Metrics,
+    /// Without the thousandth of the pixels that differs most.
+    without_worst: Option<Metrics>,
     /// What the noise of the reference alone would give.
     reference_noise: Option<ReferenceNoise>,
 }
 
-fn row(layer: &Layer, reference: &Layer, standard_errors: &[Layer]) -> Option<Row> {
-    let se = standard_errors
-        .iter()
-        .find(|se| se.label == reference.label);
-    Some(Row {
+fn row(
+    layer: &Layer,
+    reference: &Layer,
+    picture: &Picture,
+    region: Option<&Region>,
+) -> Result<Option<Row>, CliError> {
+    let cut = |pixels: &[[f32; 3]]| match region {
+        None => Ok(pixels.to_vec()),
+        Some(region) => region.of(pixels, picture.size).ok_or_else(|| {
+            let size = picture.size;
+            CliError::usage(format!(
+                "the region {region} reaches beyond the picture of {}x{} pixels",
+                size.x, size.y
+            ))
+        }),
+    };
+    let mut errors = picture.standard_errors.iter();
+    let se = errors.find(|se| se.label == reference.label);
+    let (x, r) = (cut(&layer.pixels)?, cut(&reference.pixels)?);
+    let noise = match se {
+        Some(se) => ReferenceNoise::new(&r, &cut(&se.pixels)?),
+        None => None,
+    };
+    Ok(Metrics::new(&x, &r).map(|metrics| Row {
         layer: layer.key().to_owned(),
-        metrics: Metrics::new(&layer.pixels, &reference.pixels)?,
-        reference_noise: se.and_then(|se| ReferenceNoise::new(&reference.pixels, &se.pixels)),
-    })
+        metrics,
+        without_worst: Metrics::without_worst(&x, &r),
+        reference_noise: noise,
+    }))
 }
 
 fn table(rows: &[Row]) -> Result<(), CliError> {
@@ -78,14 +101,15 @@ fn table(rows: &[Row]) -> Result<(), CliError> {
     for Row {
         layer,
         metrics: m,
+        without_worst,
         reference_noise,
     } in rows
     {
-        let nmse = m.nmse.map_or("-".to_owned(), figure);
-        let cells = [m.rmse, m.mae, m.bias, m.relmse].map(figure);
-        let [rmse, mae, bias, relmse] = cells;
-        let cells = columns([rmse, mae, bias, relmse, nmse, figure(m.smape)]);
-        print::line(&format!("{layer:width$} {cells}"))?;
+        print::line(&format!("{layer:width$} {}", figures(m)))?;
+        if let Some(m) = without_worst {
+            let (none, cells) = ("", figures(m));
+            print::line(&format!("{none:width$} {cells}  without the worst 0.1 %"))?;
+        }
         if let Some(n) = reference_noise {
             let (none, nmse) = (String::new, n.nmse.map_or("-".to_owned(), figure));
             let cells = columns([
@@ -109,6 +133,12 @@ fn table(rows: &[Row]) -> Result<(), CliError> {
         }
     }
     Ok(())
+}
+
+fn figures(m: &Metrics) -> String {
+    let nmse = m.nmse.map_or("-".to_owned(), figure);
+    let [rmse, mae, bias, relmse] = [m.rmse, m.mae, m.bias, m.relmse].map(figure);
+    columns([rmse, mae, bias, relmse, nmse, figure(m.smape)])
 }
 
 fn columns(cells: [String; 6]) -> String {

@@ -60,7 +60,7 @@ struct LeftOut {
 struct Missing {
     integrator: &'static str,
     words: String,
-    why: &'static str,
+    why: String,
 }
 
 /// Bytes.
@@ -92,7 +92,7 @@ fn scene_info(name: &str) -> Result<SceneInfo, CliError> {
         Some(Missing {
             integrator: entry.id,
             words: missing.words.into_owned(),
-            why: missing.why,
+            why: missing.why.into_owned(),
         })
     });
     Ok(SceneInfo {

@@ -55,7 +55,7 @@ pub struct MissingWords {
     /// In which scenes, with which parameters.
     when: String,
     words: String,
-    why: &'static str,
+    why: String,
 }
 
 fn show(rows: &[Row], json: bool, details: impl Fn(&Row) -> Vec<String>) -> Result<(), CliError> {
@@ -134,33 +134,41 @@ fn missing(entry: &Entry) -> Vec<MissingWords> {
         ..any
     };
     let defaults = Params::defaults(entry.params);
-    let always = (entry.missing)(&any, &defaults);
+    let always = |params: &Params| (entry.missing)(&any, params);
     let mut rows: Vec<MissingWords> = Vec::new();
     let mut add = |when: String, lost: Option<Missing>| {
         rows.extend(lost.map(|m| MissingWords {
             when,
             words: m.words.into_owned(),
-            why: m.why,
+            why: m.why.into_owned(),
         }));
     };
-    add("any lights".to_owned(), always.clone());
-    for (when, features) in [("lights of zero size", zero_size), ("a sky", sky)] {
-        let usual = (entry.missing)(&features, &defaults);
-        let differs = |m: &Missing| always.as_ref() != Some(m);
-        add(when.to_owned(), usual.clone().filter(differs));
+    for (when, features) in [
+        ("any lights", any),
+        ("lights of zero size", zero_size),
+        ("a sky", sky),
+    ] {
+        // What is lost under any lights is not said again.
+        let is_first = features == any;
+        let news = |params: &Params| {
+            let lost = (entry.missing)(&features, params);
+            lost.filter(|m| is_first || always(params).as_ref() != Some(m))
+        };
+        let usual = news(&defaults);
+        add(when.to_owned(), usual.clone());
         for spec in entry.params {
-            let ParamKind::Choice(words) = spec.kind else {
-                continue;
+            let words: &[&str] = match spec.kind {
+                ParamKind::Choice(words) => words,
+                ParamKind::Switch => &["on", "off"],
+                _ => continue,
             };
             for word in words {
                 let mut params = defaults.clone();
                 if params.set(entry.params, spec.name, word).is_err() {
                     continue;
                 }
-                let lost = (entry.missing)(&features, &params);
-                let differs = |m: &Missing| usual.as_ref() != Some(m);
-                let when = format!("{when} and {}={word}", spec.name);
-                add(when, lost.filter(differs));
+                let lost = news(&params).filter(|m| usual.as_ref() != Some(m));
+                add(format!("{when} and {}={word}", spec.name), lost);
             }
         }
     }

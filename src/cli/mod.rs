@@ -13,7 +13,9 @@ mod info;
 mod list;
 mod picture;
 mod print;
+mod reference;
 mod render;
+mod report;
 mod scene;
 mod suggest;
 
@@ -25,6 +27,7 @@ use args::{Cli, Command};
 use error::CliError;
 
 #[cfg(feature = "viewer")]
+use crate::cli::print::note;
 use crate::viewer::opening::Opening;
 
 /// Runs the program on the process's arguments.
@@ -32,6 +35,10 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
+            if let Some(mistyped) = mistyped_command(&error) {
+                note!("error: {mistyped}");
+                return ExitCode::from(mistyped.exit_code());
+            }
             // Nothing is left to be done where even the message cannot be written.
             let _ = error.print();
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
@@ -40,7 +47,7 @@ pub fn main() -> ExitCode {
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            note!("error: {error}");
             ExitCode::from(error.exit_code())
         }
     }
@@ -50,6 +57,8 @@ fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
         Some(Command::Render(args)) => render::run(args),
         Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Report(args)) => report::run(&args),
+        Some(Command::Reference(args)) => reference::run(&args),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args.what),
@@ -58,6 +67,21 @@ fn run(cli: Cli) -> Result<(), CliError> {
             window(name.map(check_name).transpose()?)
         }
     }
+}
+
+/// What is wrong with a first word that is neither a command nor a scene; clap would complain of
+/// what follows it.
+fn mistyped_command(error: &clap::Error) -> Option<CliError> {
+    if !error.use_stderr() {
+        return None;
+    }
+    let first = std::env::args().nth(1).filter(|a| !a.starts_with('-'))?;
+    let command = Cli::command();
+    let is_command = command.get_subcommands().any(|c| c.get_name() == first);
+    if is_command || first == "help" {
+        return None;
+    }
+    check_name(&first).err()
 }
 
 /// A word that stands alone is a scene; a mistyped command ends here too.

@@ -1,4 +1,4 @@
-//! Standard output.
+//! Standard output, and notes beside it.
 
 use std::io::{self, ErrorKind, Write};
 
@@ -16,6 +16,16 @@ pub fn line(text: &str) -> Result<(), CliError> {
         _ => Ok(()),
     }
 }
+
+/// Writes a line for the person at the terminal, formatted as by `format!`. A reader who has gone
+/// away, or a full disk behind it, must not cost the picture.
+macro_rules! note {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr().lock(), $($text)*);
+    }};
+}
+pub(crate) use note;
 
 /// Writes one JSON value.
 pub fn json(value: &impl Serialize) -> Result<(), CliError> {

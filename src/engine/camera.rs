@@ -31,6 +31,34 @@ pub struct Camera {
     focus_distance: f32,
 }
 
+/// How the middle of the lens sees the scene: what overlays are drawn with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// The middle of the lens.
+    pub position: Vec3A,
+    /// To the right edge of the picture at distance 1, over its squared length.
+    pub right: Vec3A,
+    /// To the upper edge, likewise.
+    pub up: Vec3A,
+    /// Unit view direction.
+    pub forward: Vec3A,
+    /// Pixels.
+    pub size: Vec2,
+}
+
+impl Projection {
+    /// Film position, on the picture or beside it, and depth along the view direction of the
+    /// point `p`; the position means nothing unless the depth is above 0.
+    #[inline]
+    pub fn film(&self, p: Vec3A) -> (Vec2, f32) {
+        let from = p - self.position;
+        let depth = from.dot(self.forward);
+        let slope = Vec2::new(from.dot(self.right), from.dot(self.up)) / depth;
+        let film = Vec2::new(0.5 + 0.5 * slope.x, 0.5 - 0.5 * slope.y) * self.size;
+        (film, depth)
+    }
+}
+
 /// A point of the lens as seen from a point of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraSample {
@@ -128,6 +156,17 @@ impl Camera {
     /// Width and height in pixels.
     pub fn size(&self) -> UVec2 {
         UVec2::new(self.desc.width, self.desc.height)
+    }
+
+    /// How the middle of the lens sees the scene.
+    pub fn projection(&self) -> Projection {
+        Projection {
+            position: self.position,
+            right: self.right / self.half.x,
+            up: self.up / self.half.y,
+            forward: self.forward,
+            size: self.size,
+        }
     }
 
     /// Unit view direction, the normal of the lens.
@@ -318,6 +357,21 @@ mod tests {
                 let cos = ray.d.dot(camera.forward());
                 let weight = importance * cos / (pdf_pos * pdf_dir);
                 assert!((weight - 1.0).abs() < 1e-5, "{weight}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_are_projected_to_where_rays_see_them() {
+        for camera in cameras() {
+            for i in 0..100 {
+                let film = sampler(i).next_2d() * camera.size;
+                let ray = camera.generate_ray(film, Vec2::splat(0.5));
+                let (found, depth) = camera.projection().film(ray.at(7.0));
+                assert!((found - film).length() < 1e-3, "{film} {found}");
+                assert!((depth - 7.0 * ray.d.dot(camera.forward())).abs() < 1e-4);
+                let behind = camera.projection().film(ray.at(-1.0)).1;
+                assert!(behind < 0.0);
             }
         }
     }

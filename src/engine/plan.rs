@@ -112,7 +112,6 @@ impl RenderPlan {
     #[must_use]
     pub fn with_everything_on(mut self) -> Self {
         self.planned = self.asked;
-        self.features.opacity = true;
         self.left_out.clear();
         self
     }
@@ -166,7 +165,7 @@ impl RenderPlan {
             leave("opacity tests", "every surface stops every ray");
         }
         if !f.environment {
-            leave("the sky", "no light lies at infinity around the scene");
+            leave("the sky", "rays that escape meet no light");
         }
         if !f.zero_size_lights && !f.hittable_lights && !f.shining_media && lit {
             leave("hits of lights", "no light can be met");

@@ -1,6 +1,10 @@
-//! Picture files that command line and window share: layered OpenEXR, and PNG with texts.
+//! Picture files that command line and window share: layered OpenEXR, and PNG and
+//! Radiance with texts.
 
+pub mod colors;
 pub mod exr_file;
+pub mod hdr_file;
+pub mod origin;
 pub mod png_file;
 
 use glam::UVec2;

@@ -26,12 +26,25 @@ pub fn encode(
     Ok(bytes)
 }
 
+/// All texts of a file; none if it is no PNG.
+pub fn read_texts(file: impl std::io::BufRead + std::io::Seek) -> Vec<(String, String)> {
+    let Ok(reader) = png::Decoder::new(file).read_info() else {
+        return Vec::new();
+    };
+    let texts = reader.info().utf8_text.iter();
+    texts
+        .filter_map(|t| Some((t.keyword.clone(), t.get_text().ok()?)))
+        .collect()
+}
+
 /// The text `name` of a file, if it is a PNG that has one.
 #[cfg(feature = "viewer")]
 pub fn read_text(file: impl std::io::BufRead + std::io::Seek, name: &str) -> Option<String> {
-    let reader = png::Decoder::new(file).read_info().ok()?;
-    let texts = &reader.info().utf8_text;
-    texts.iter().find(|t| t.keyword == name)?.get_text().ok()
+    let texts = read_texts(file).into_iter();
+    texts
+        .filter(|(n, _)| n == name)
+        .map(|(_, text)| text)
+        .next()
 }
 
 #[cfg(all(test, feature = "viewer"))]

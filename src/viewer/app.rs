@@ -1,30 +1,33 @@
 //! The event loop: input goes to the workspace, what it asks for is carried out, and the window
 //! is drawn again only when something changed.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui_wgpu::winit::Painter;
 use winit::application::ApplicationHandler;
-use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
-use winit::window::{Fullscreen, Window, WindowId};
+use winit::window::{Fullscreen, WindowId};
 
 use super::ViewError;
-use super::gpu::painter;
 use super::loader::Loader;
+use super::measuring::background::Waker;
 use super::opening::Opening;
 use super::panels;
 use super::preferences::{self, Preferences};
 use super::rendering::Rendering;
+use super::shown::Shown;
+use super::soak::{Report, Soak};
 use super::source::Read;
 use super::thumbnails::{self, Thumbnail};
 use super::watch::Watch;
 use super::workspace::{Request, Workspace};
 
-/// Red, green, blue and opacity where no picture is yet.
-const BACKGROUND: [f32; 4] = [0.1, 0.1, 0.1, 1.0];
+/// Time without input after which the window prepares for what may be asked next.
+const REST: Duration = Duration::from_millis(400);
+/// Time between two steps of that: a step may keep the graphics device for most of it.
+const STEP: Duration = Duration::from_millis(150);
 
 /// What wakes the event loop from other threads.
 #[derive(Debug)]
@@ -39,8 +42,18 @@ pub enum Wake {
     Captured(Arc<egui::ColorImage>),
     /// The graphics device is gone.
     DeviceLost,
+    /// It refuses something.
+    DrawingFailed(String),
+    /// A tool that reads windows aloud wants something.
+    Accessibility(egui_winit::accesskit_winit::Event),
     /// A picture of the gallery.
     Thumbnail(Thumbnail),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for Wake {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Accessibility(event)
+    }
 }
 
 /// The program around the workspace.
@@ -52,19 +65,21 @@ pub struct App {
     context: egui::Context,
     shown: Option<Shown>,
     repaint_at: Option<Instant>,
+    /// An input waits for its answer.
+    input_due: bool,
+    /// When to prepare one more way to show the picture.
+    warm_up_at: Option<Instant>,
     watch: Watch,
     wants_thumbnails: bool,
     capture: bool,
+    /// Where preferences are kept, if they are.
+    remembers: Option<PathBuf>,
+    soak: Option<Soak>,
+    /// What the random hand found.
+    pub report: Option<Report>,
     pub(super) clipboard: Option<arboard::Clipboard>,
     /// Why the window could not open.
     pub error: Option<ViewError>,
-}
-
-/// What exists while there is a window.
-struct Shown {
-    window: Arc<Window>,
-    input: egui_winit::State,
-    painter: Painter,
 }
 
 impl App {
@@ -85,6 +100,7 @@ impl App {
         let rendering = Rendering::new(wake(&proxy, || Wake::Frame)).map_err(ViewError::Failed)?;
         let context = egui::Context::default();
         panels::apply_style(&context);
+        let waker = Waker::new(wake(&proxy, || Wake::Frame));
         let mut app = Self {
             workspace: Workspace::new(opening.source.clone()),
             loader: Loader::new(wake(&proxy, || Wake::Loaded)),
@@ -93,17 +109,49 @@ impl App {
             context,
             shown: None,
             repaint_at: None,
+            input_due: false,
+            warm_up_at: None,
             watch: Watch::new(Vec::new()),
             wants_thumbnails: true,
             capture: false,
+            remembers: None,
+            soak: None,
+            report: None,
             clipboard: None,
             error: None,
         };
-        if let Some(file) = preferences::file() {
-            app.workspace.preferences = Preferences::load(&file);
-        }
+        app.workspace.measuring.waker = waker;
         app.load(opening, Some(read), false);
         Ok(app)
+    }
+
+    /// Uses what was remembered of the last window, and remembers this one.
+    pub fn use_preferences(&mut self) {
+        self.remembers = preferences::file();
+        if let Some(file) = &self.remembers {
+            self.workspace.preferences = Preferences::load(file);
+        }
+    }
+
+    /// A random hand plays with the window for `length`.
+    pub fn soak(&mut self, length: Duration, seed: u64) {
+        self.soak = Some(Soak::new(length, seed, self.workspace.model.clone()));
+    }
+
+    /// Lets the random hand do what is due.
+    fn soak_step(&mut self, event_loop: &ActiveEventLoop) {
+        let (Some(soak), Some(shown)) = (&mut self.soak, &mut self.shown) else {
+            return;
+        };
+        if soak.next() > Instant::now() {
+            return;
+        }
+        self.report = soak.step(&mut self.workspace, shown);
+        if self.report.is_some() {
+            event_loop.exit();
+        }
+        self.input_due = true;
+        self.request_redraw();
     }
 
     /// Starts to read a scene.
@@ -115,44 +163,18 @@ impl App {
         }
     }
 
-    fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<Shown, ViewError> {
-        let [width, height] = self.workspace.preferences.window;
-        let attributes = Window::default_attributes()
-            .with_title("lightscope")
-            .with_inner_size(LogicalSize::new(width, height))
-            .with_min_inner_size(LogicalSize::new(320.0, 240.0));
-        let window = event_loop
-            .create_window(attributes)
-            .map_err(|error| ViewError::Failed(format!("no window can be opened: {error}")))?;
-        let window = Arc::new(window);
-        let painter = self.painter(event_loop, &window)?;
-        let input = egui_winit::State::new(
-            self.context.clone(),
-            egui::ViewportId::ROOT,
-            event_loop,
-            Some(window.scale_factor() as f32),
-            window.theme(),
-            painter.max_texture_side(),
-        );
-        Ok(Shown {
-            window,
-            input,
-            painter,
-        })
+    fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewError> {
+        let size = self.workspace.preferences.window;
+        let shown = Shown::open(&self.context, event_loop, &self.proxy, size)?;
+        self.workspace.max_pixels = shown.max_pixels();
+        self.shown = Some(shown);
+        self.touched();
+        Ok(())
     }
 
-    fn painter(
-        &mut self,
-        event_loop: &ActiveEventLoop,
-        window: &Arc<Window>,
-    ) -> Result<Painter, ViewError> {
-        let proxy = self.proxy.clone();
-        let lost = move || drop(proxy.send_event(Wake::DeviceLost));
-        let display = event_loop.owned_display_handle();
-        let painter =
-            painter::create(&self.context, display, window, lost).map_err(ViewError::NoAdapter)?;
-        self.workspace.max_pixels = painter::max_pixels(&painter);
-        Ok(painter)
+    /// The user did something: what can wait does.
+    fn touched(&mut self) {
+        self.warm_up_at = Instant::now().checked_add(REST);
     }
 
     fn request_redraw(&self) {
@@ -184,7 +206,11 @@ impl App {
             self.set_title();
         }
         if let Some(frame) = self.rendering.new_frame() {
-            self.workspace.show_frame(frame);
+            let made = self.rendering.made(&frame);
+            self.workspace.show_frame(Arc::clone(&frame));
+            if let Some(made) = made {
+                self.workspace.measuring.observe(made, &frame);
+            }
         }
     }
 
@@ -202,8 +228,12 @@ impl App {
         if size.width == 0 || size.height == 0 {
             return;
         }
+        // Where software draws, an answer has all cores for itself.
+        let hold = (std::mem::take(&mut self.input_due) && shown.is_software())
+            .then(|| self.rendering.hold());
         let input = shown.input.take_egui_input(&shown.window);
         let workspace = &mut self.workspace;
+        workspace.gpu_bytes = shown.picture_bytes();
         let mut output = self.context.run_ui(input, |ui| panels::show(ui, workspace));
         shown
             .input
@@ -213,29 +243,26 @@ impl App {
             .get(&egui::ViewportId::ROOT)
             .map_or(Duration::MAX, |viewport| viewport.repaint_delay);
         self.repaint_at = Instant::now().checked_add(delay);
-        let primitives = self
-            .context
-            .tessellate(output.shapes, output.pixels_per_point);
-        let capture = if std::mem::take(&mut self.capture) {
+        let scale = output.pixels_per_point;
+        let primitives = self.context.tessellate(output.shapes, scale);
+        let mut captures = Vec::new();
+        if std::mem::take(&mut self.capture) {
             let proxy = self.proxy.clone();
             let send = move |image| drop(proxy.send_event(Wake::Captured(image)));
-            vec![egui::ScreenshotCallback::new(send)]
-        } else {
-            Vec::new()
-        };
-        let captures = !capture.is_empty();
-        shown.painter.paint_and_update_textures(
-            egui::ViewportId::ROOT,
-            output.pixels_per_point,
-            BACKGROUND,
-            &primitives,
-            &mut output.textures_delta,
-            capture,
-            &shown.window,
-        );
-        if captures {
-            painter::wait(&shown.painter);
+            captures.push(egui::ScreenshotCallback::new(send));
         }
+        shown.paint(&primitives, scale, &mut output.textures_delta, captures);
+        // A surface that had no picture is tried again.
+        if self
+            .context
+            .has_requested_repaint_for(&egui::ViewportId::ROOT)
+        {
+            shown.window.request_redraw();
+        }
+        if hold.is_some() {
+            shown.wait();
+        }
+        drop(hold);
         self.carry_out(event_loop);
         self.make_thumbnails();
         self.follow();
@@ -272,6 +299,7 @@ impl App {
                 Request::Reload => self.reload(),
                 Request::SaveAs(path) => self.save_as(path),
                 Request::Save(format) => self.save(format),
+                Request::SavePlot(extension) => self.save_plot(extension),
                 Request::SaveWindow => {
                     self.capture = true;
                     self.request_redraw();
@@ -308,18 +336,51 @@ impl App {
 
     /// Makes everything on the graphics card anew.
     fn recover(&mut self, event_loop: &ActiveEventLoop) {
-        let Some(shown) = self.shown.take() else {
+        let Some(shown) = &mut self.shown else {
             return;
         };
-        drop(shown.painter);
-        match self.open(event_loop) {
-            Ok(shown) => self.shown = Some(shown),
+        // The gallery's pictures went with the device.
+        self.workspace.textures.clear();
+        match shown.renew(&self.context) {
+            Ok(()) => {
+                self.workspace.max_pixels = shown.max_pixels();
+                self.workspace.notices.clear_error("graphics");
+                self.workspace
+                    .notices
+                    .say("The graphics device was lost; the window goes on with a new one.");
+                self.touched();
+            }
             Err(error) => {
                 self.error = Some(error);
                 event_loop.exit();
             }
         }
-        self.request_redraw();
+    }
+
+    fn accessibility(&mut self, event: egui_winit::accesskit_winit::WindowEvent) {
+        use egui_winit::accesskit_winit::WindowEvent;
+        match event {
+            WindowEvent::InitialTreeRequested => self.context.enable_accesskit(),
+            WindowEvent::AccessibilityDeactivated => self.context.disable_accesskit(),
+            WindowEvent::ActionRequested(request) => {
+                if let Some(shown) = &mut self.shown {
+                    shown.input.on_accesskit_action_request(request);
+                }
+            }
+        }
+    }
+
+    /// Prepares what may be asked next, one step at a time.
+    fn warm_up(&mut self) {
+        if self.warm_up_at.is_none_or(|at| at > Instant::now()) {
+            return;
+        }
+        let more = match &self.shown {
+            // The picture comes first.
+            Some(shown) => self.workspace.frame.is_none() || shown.warm_up(),
+            None => false,
+        };
+        self.warm_up_at = more.then(|| Instant::now() + STEP);
     }
 }
 
@@ -329,8 +390,7 @@ impl ApplicationHandler<Wake> for App {
             return;
         }
         match self.open(event_loop) {
-            Ok(shown) => {
-                self.shown = Some(shown);
+            Ok(()) => {
                 self.set_title();
                 self.request_redraw();
             }
@@ -348,6 +408,15 @@ impl ApplicationHandler<Wake> for App {
             Wake::Saved(Err(sentence)) => self.workspace.notices.set_error("save", sentence),
             Wake::Captured(image) => self.save_window(&image),
             Wake::DeviceLost => self.recover(event_loop),
+            Wake::DrawingFailed(why) => {
+                // Told once: each repaint may fail in the same way.
+                let graphics = ("graphics", why);
+                if self.workspace.notices.errors().contains(&graphics) {
+                    return;
+                }
+                self.workspace.notices.set_error(graphics.0, graphics.1);
+            }
+            Wake::Accessibility(event) => self.accessibility(event.window_event),
             Wake::Thumbnail(thumbnail) => self.workspace.thumbnails.push(thumbnail),
         }
         self.request_redraw();
@@ -364,14 +433,15 @@ impl ApplicationHandler<Wake> for App {
                 if let Some((width, height)) = sides {
                     let points = size.to_logical(shown.window.scale_factor());
                     self.workspace.preferences.window = [points.width, points.height];
-                    let root = egui::ViewportId::ROOT;
-                    shown.painter.on_window_resized(root, width, height);
+                    shown.resize(width, height);
                 }
             }
             _ => {}
         }
         if shown.input.on_window_event(&shown.window, &event).repaint {
             shown.window.request_redraw();
+            self.input_due = true;
+            self.touched();
         }
     }
 
@@ -385,7 +455,15 @@ impl ApplicationHandler<Wake> for App {
             self.reload();
             self.request_redraw();
         }
-        let times = [self.repaint_at, self.watch.next_look()];
+        self.warm_up();
+        self.soak_step(event_loop);
+        let deed = self.soak.as_ref().map(Soak::next);
+        let times = [
+            self.repaint_at,
+            self.watch.next_look(),
+            self.warm_up_at,
+            deed,
+        ];
         event_loop.set_control_flow(match times.into_iter().flatten().min() {
             Some(at) => ControlFlow::WaitUntil(at),
             None => ControlFlow::Wait,
@@ -393,8 +471,8 @@ impl ApplicationHandler<Wake> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        if let Some(file) = preferences::file() {
-            self.workspace.preferences.save(&file);
+        if let Some(file) = &self.remembers {
+            self.workspace.preferences.save(file);
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The badge "sum of parts − whole".
 
+use std::ops::Range;
+
 use super::display::{PARTS, layer_of_part};
 use crate::engine::film::Frame;
 
@@ -16,18 +18,26 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Measures a frame.
-    pub fn update(&mut self, frame: &Frame) {
-        *self = Self::of(frame).unwrap_or_default();
+    /// Of the components of a frame.
+    pub fn of_components(frame: &Frame) -> Self {
+        let layers = layer_of_part(0)..layer_of_part(PARTS);
+        Self::of(frame, layers).unwrap_or_default()
     }
 
-    fn of(frame: &Frame) -> Option<Self> {
+    /// Of the typed expressions of a frame, as if they shared no path.
+    pub fn of_expressions(frame: &Frame) -> Self {
+        let layers = layer_of_part(PARTS)..frame.layers.len();
+        Self::of(frame, layers).unwrap_or_default()
+    }
+
+    fn of(frame: &Frame, layers: Range<usize>) -> Option<Self> {
         let whole = &frame.layers.first()?.pixels;
-        let parts: Vec<&[[f32; 3]]> = (0..PARTS)
-            .filter_map(|part| frame.layers.get(layer_of_part(part)))
-            .map(|layer| layer.pixels.as_slice())
-            .collect();
-        let complete = parts.len() == PARTS && parts.iter().all(|p| p.len() == whole.len());
+        if !frame.plan.whole || layers.is_empty() {
+            return None;
+        }
+        let parts = frame.layers.get(layers)?.iter();
+        let parts: Vec<&[[f32; 3]]> = parts.map(|layer| layer.pixels.as_slice()).collect();
+        let complete = parts.iter().all(|p| p.len() == whole.len());
         if !complete || whole.is_empty() {
             return None;
         }
@@ -61,7 +71,9 @@ mod tests {
     use crate::engine::plan::RenderPlan;
 
     fn frame(values: [f32; 5]) -> Frame {
-        let mut frame = Frame::empty(std::sync::Arc::new(RenderPlan::nothing()));
+        let mut plan = RenderPlan::nothing();
+        plan.whole = true;
+        let mut frame = Frame::empty(std::sync::Arc::new(plan));
         frame.layers = values
             .map(|value| FrameLayer {
                 label: String::new(),
@@ -73,18 +85,21 @@ mod tests {
 
     #[test]
     fn parts_that_add_up_differ_by_nothing() {
-        let balance = Balance::of(&frame([1.0, 0.25, 0.5, 0.125, 0.125]));
+        let balance = Balance::of_components(&frame([1.0, 0.25, 0.5, 0.125, 0.125]));
         let expected = Balance {
             mean: Some(0.0),
             rms: Some(0.0),
         };
-        assert_eq!(balance, Some(expected));
+        assert_eq!(balance, expected);
     }
 
     #[test]
     fn a_part_that_lacks_shows() {
-        let balance = Balance::of(&frame([1.0, 0.25, 0.5, 0.0, 0.0])).expect("a balance");
+        let balance = Balance::of_components(&frame([1.0, 0.25, 0.5, 0.0, 0.0]));
         assert_eq!(balance.mean, Some(-0.25));
-        assert_eq!(Balance::of(&frame([0.0; 5])), None);
+        let black = Balance::of_components(&frame([0.0; 5]));
+        assert_eq!(black, Balance::default());
+        let none = Balance::of_expressions(&frame([1.0; 5]));
+        assert_eq!(none, Balance::default());
     }
 }

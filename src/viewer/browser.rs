@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 /// Names that can be opened.
 pub const OPENED: [&str; 5] = ["toml", "json", "obj", "png", "exr"];
+/// Names that can be measured against.
+pub const REFERENCES: [&str; 2] = ["exr", "hdr"];
 /// Names that can be saved.
 pub const SAVED: [&str; 3] = ["png", "exr", "json"];
 
@@ -12,6 +14,8 @@ pub const SAVED: [&str; 3] = ["png", "exr", "json"];
 pub enum Purpose {
     /// To be read.
     Open,
+    /// To be measured against.
+    Reference,
     /// To be written.
     Save,
 }
@@ -40,6 +44,8 @@ pub struct Browser {
     pub error: Option<String>,
     /// A file that would be replaced, if the user agrees.
     pub replace: Option<PathBuf>,
+    /// It was not drawn yet: the name gets the keyboard then.
+    pub fresh: bool,
     folder: PathBuf,
     entries: Vec<Entry>,
 }
@@ -54,6 +60,7 @@ impl Browser {
             filter: String::new(),
             error: None,
             replace: None,
+            fresh: true,
             folder: PathBuf::new(),
             entries: Vec::new(),
         };
@@ -79,6 +86,7 @@ impl Browser {
         };
         let extensions: &[&str] = match self.purpose {
             Purpose::Open => &OPENED,
+            Purpose::Reference => &REFERENCES,
             Purpose::Save => &SAVED,
         };
         let entry = |entry: std::fs::DirEntry| {
@@ -135,7 +143,7 @@ impl Browser {
                 self.error = Some("Choose or type a name.".to_owned())
             }
             _ if path.is_dir() => self.go_to(&path),
-            Purpose::Open if !path.is_file() => {
+            Purpose::Open | Purpose::Reference if !path.is_file() => {
                 self.error = Some(format!("There is no file {}.", path.display()));
             }
             Purpose::Save if !says_format(&path) => {

@@ -50,6 +50,8 @@ pub enum Command {
     Inspector,
     /// The whole picture again, after a look at its pixels.
     ZoomOut,
+    /// Show or hide the plot of errors.
+    ErrorPlot,
     /// Show or hide the panel.
     Panel,
     /// Light or dark.
@@ -246,13 +248,20 @@ pub const TABLE: &[Binding] = &[
         Command::Inspector,
         &[key(Key::I)],
         "Inspector",
-        "Show what lies under the cursor: radiance, samples, material, normal, depth.",
+        "Show what lies under the cursor: radiance, its standard error (from two independent halves, \
+         over the 5 × 5 pixels around), samples, material, normal, depth.",
     ),
     bind(
         Command::ZoomOut,
         &[key(Key::Z)],
         "Zoom out",
         "Show the whole picture again after Ctrl + wheel has magnified its pixels.",
+    ),
+    bind(
+        Command::ErrorPlot,
+        &[key(Key::M)],
+        "Error plot",
+        "Show or hide error against time in a window of its own.",
     ),
     bind(
         Command::Panel,

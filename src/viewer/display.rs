@@ -16,6 +16,8 @@ pub enum Shown {
     Parts([bool; PARTS]),
     /// All four components side by side.
     Grid,
+    /// The typed expression of this number alone.
+    Expression(u8),
 }
 
 /// How a picture is brought to the screen.
@@ -61,6 +63,11 @@ pub struct Tile {
     pub label: Option<&'static str>,
 }
 
+/// Index of a typed expression among the layers of a frame: they follow the components.
+pub const fn layer_of_expression(number: usize) -> usize {
+    PARTS + 1 + number
+}
+
 /// Index of a component among the layers of a frame: the whole is the first.
 pub const fn layer_of_part(part: usize) -> usize {
     part + 1
@@ -70,7 +77,7 @@ impl Shown {
     /// Which components are in what is shown.
     pub fn parts(self) -> [bool; PARTS] {
         match self {
-            Self::Whole | Self::Grid => [true; PARTS],
+            Self::Whole | Self::Grid | Self::Expression(_) => [true; PARTS],
             Self::Parts(on) => on,
         }
     }
@@ -124,6 +131,9 @@ impl Display {
                 let layers = (0..PARTS).filter(|&p| on[p]).map(layer_of_part).collect();
                 let own = self.shown.solo().map_or(0.0, |p| self.part_exposure[p]);
                 single(layers, self.exposure + own)
+            }
+            Shown::Expression(i) => {
+                single(vec![layer_of_expression(usize::from(i))], self.exposure)
             }
             Shown::Grid => (0..PARTS).map(|part| self.quarter(part)).collect(),
         }

@@ -5,9 +5,10 @@ use glam::UVec2;
 use super::display::Display;
 use super::false_color::false_color;
 use super::model::Model;
+use super::state::KEY;
 use crate::engine::film::Frame;
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
-use crate::picture::{exr_file, png_file};
+use crate::picture::{exr_file, origin, png_file};
 
 /// What the window shows for a pixel that is infinite.
 const INFINITE_COLOR: [u8; 3] = [0, 255, 255];
@@ -63,9 +64,12 @@ pub fn png(frame: &Frame, model: &Model, state: String) -> Result<Vec<u8>, Strin
 /// # Errors
 /// A sentence.
 pub fn exr(frame: &Frame, model: &Model, state: String) -> Result<Vec<u8>, String> {
+    // The whole comes first, if it was computed.
+    let first = usize::from(!frame.plan.whole);
     let layers: Vec<(&str, &[[f32; 3]])> = frame
         .layers
         .iter()
+        .skip(first)
         .map(|layer| (layer.label.as_str(), layer.pixels.as_slice()))
         .collect();
     exr_file::encode(frame.size, &layers, &texts(frame, model, state))
@@ -74,31 +78,8 @@ pub fn exr(frame: &Frame, model: &Model, state: String) -> Result<Vec<u8>, Strin
 
 /// What a file says about its origin.
 fn texts(frame: &Frame, model: &Model, state: String) -> Vec<(String, String)> {
-    let settings = &model.settings;
-    let parameters: Vec<String> = settings
-        .params
-        .iter()
-        .map(|(name, value)| format!("{name}={value}"))
-        .collect();
-    let error = frame
-        .relative_error
-        .map_or("unknown".to_owned(), |e| e.to_string());
-    let mut texts: Vec<(String, String)> = [
-        ("scene", model.source.to_string()),
-        ("integrator", settings.integrator.id.to_owned()),
-        ("parameters", parameters.join(" ")),
-        ("spp", frame.passes.to_string()),
-        ("seconds", frame.t_wall.to_string()),
-        ("seed", settings.seed.to_string()),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("error", error),
-        ("state", state),
-    ]
-    .map(|(name, text)| (format!("lightscope:{name}"), text))
-    .into();
-    for (i, expression) in settings.layers.expressions.iter().enumerate() {
-        texts.push((format!("expr{}", i + 1), expression.text().to_owned()));
-    }
+    let mut texts = origin::texts(&model.source.to_string(), &model.settings, frame);
+    texts.push((KEY.to_owned(), state));
     texts
 }
 

@@ -1,17 +1,7 @@
 //! Luminance as colours that colour-blind people can tell apart.
 
-/// Equal steps of viridis (van der Walt and Smith 2015), sRGB-encoded. The shader has the same.
-const VIRIDIS: [[f32; 3]; 9] = [
-    [0.267, 0.005, 0.329],
-    [0.279, 0.175, 0.483],
-    [0.230, 0.322, 0.546],
-    [0.173, 0.449, 0.558],
-    [0.128, 0.567, 0.551],
-    [0.158, 0.684, 0.502],
-    [0.369, 0.789, 0.383],
-    [0.678, 0.864, 0.190],
-    [0.993, 0.906, 0.144],
-];
+use crate::picture::colors;
+
 /// Stops that the scale covers.
 pub const STOPS: f32 = 10.0;
 /// Stops of them that lie below luminance 1.
@@ -28,11 +18,7 @@ pub fn false_color(exposure_ev: f32, rgb: [f32; 3]) -> [u8; 3] {
 
 /// The colour at `x` of the scale, 0 to 1.
 pub fn scale(x: f32) -> [u8; 3] {
-    let at = x.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f32;
-    let i = (at as usize).min(VIRIDIS.len() - 2);
-    let t = at - i as f32;
-    let mix = |c: usize| VIRIDIS[i][c] * (1.0 - t) + VIRIDIS[i + 1][c] * t;
-    [mix(0), mix(1), mix(2)].map(|v| (v * 255.0).round() as u8)
+    colors::viridis(x)
 }
 
 #[cfg(test)]

@@ -90,7 +90,7 @@ impl App {
         });
     }
 
-    fn write(
+    pub(super) fn write(
         &self,
         path: PathBuf,
         bytes: impl FnOnce() -> Result<Vec<u8>, String> + Send + 'static,

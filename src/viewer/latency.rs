@@ -33,6 +33,8 @@ struct Bench {
     workspace: Workspace,
     rendering: Rendering,
     size: UVec2,
+    /// The device draws on the cores that render.
+    software: bool,
 }
 
 /// What was measured, in milliseconds from the moment each input was due.
@@ -61,6 +63,7 @@ pub fn measure(
         drawn: Vec::with_capacity(inputs),
         adapter,
     };
+    bench.warm_up();
     let mut due = Instant::now();
     for i in 0..WARM_UP + inputs {
         due = due.max(Instant::now()) + PAUSE;
@@ -104,6 +107,7 @@ impl Bench {
         size: UVec2,
     ) -> Result<(Self, String), ViewError> {
         let (device, queue, adapter) = device()?;
+        let software = adapter.device_type == wgpu::DeviceType::Cpu;
         let target = device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d {
@@ -135,12 +139,21 @@ impl Bench {
             workspace,
             rendering: Rendering::new(|| ()).map_err(ViewError::Failed)?,
             size,
+            software,
         };
-        Ok((bench, adapter))
+        Ok((bench, adapter.name))
+    }
+
+    /// What the window does while nobody touches it.
+    fn warm_up(&mut self) {
+        if let Some(resources) = self.renderer.callback_resources.get_mut::<Resources>() {
+            while resources.warm_up(&self.device, &self.queue) {}
+        }
     }
 
     /// What the window does for an input, until the device is done; returns when the panels were.
     fn answer(&mut self, events: Vec<egui::Event>) -> Instant {
+        let _hold = self.software.then(|| self.rendering.hold());
         if let Some(frame) = self.rendering.new_frame() {
             self.workspace.show_frame(frame);
         }
@@ -204,7 +217,7 @@ impl Bench {
     }
 }
 
-fn device() -> Result<(wgpu::Device, wgpu::Queue, String), ViewError> {
+fn device() -> Result<(wgpu::Device, wgpu::Queue, wgpu::AdapterInfo), ViewError> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     pollster::block_on(async {
         let options = wgpu::RequestAdapterOptions::default();
@@ -213,6 +226,6 @@ fn device() -> Result<(wgpu::Device, wgpu::Queue, String), ViewError> {
         let descriptor = wgpu::DeviceDescriptor::default();
         let device = adapter.request_device(&descriptor).await;
         let (device, queue) = device.map_err(|error| ViewError::NoAdapter(error.to_string()))?;
-        Ok((device, queue, adapter.get_info().name))
+        Ok((device, queue, adapter.get_info()))
     })
 }

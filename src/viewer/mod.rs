@@ -18,15 +18,20 @@ mod gpu;
 pub mod history;
 pub mod latency;
 mod loader;
+pub mod measuring;
 pub mod model;
 pub mod navigation;
 pub mod notices;
 pub mod opening;
 pub mod panels;
+pub mod photons;
 pub mod picking;
+mod plot_files;
 pub mod preferences;
 mod rendering;
 mod saver;
+mod shown;
+pub mod soak;
 pub mod source;
 pub mod state;
 pub mod thumbnails;
@@ -34,6 +39,7 @@ mod watch;
 pub mod workspace;
 
 use std::fmt;
+use std::time::Duration;
 
 use winit::event_loop::EventLoop;
 
@@ -73,18 +79,44 @@ impl fmt::Display for ViewError {
     }
 }
 
+/// Opens the window and lets a random hand play with it for `length`.
+///
+/// # Errors
+/// Without display or graphics driver.
+pub fn soak(
+    opening: Opening,
+    read: Read,
+    length: Duration,
+    seed: u64,
+) -> Result<soak::Report, ViewError> {
+    let event_loop = event_loop()?;
+    let mut app = App::new(opening, read, event_loop.create_proxy())?;
+    app.soak(length, seed);
+    show(event_loop, &mut app)?;
+    Ok(app.report.take().unwrap_or_default())
+}
+
 /// Opens the window and returns when it is closed. `read` is what was read of the scene already,
 /// so that a wrong one was refused before there is a window.
 ///
 /// # Errors
 /// Without display or graphics driver.
 pub fn run(opening: Opening, read: Read) -> Result<(), ViewError> {
-    let event_loop = EventLoop::<Wake>::with_user_event()
-        .build()
-        .map_err(|_| ViewError::NoDisplay)?;
+    let event_loop = event_loop()?;
     let mut app = App::new(opening, read, event_loop.create_proxy())?;
+    app.use_preferences();
+    show(event_loop, &mut app)
+}
+
+fn event_loop() -> Result<EventLoop<Wake>, ViewError> {
+    EventLoop::<Wake>::with_user_event()
+        .build()
+        .map_err(|_| ViewError::NoDisplay)
+}
+
+fn show(event_loop: EventLoop<Wake>, app: &mut App) -> Result<(), ViewError> {
     event_loop
-        .run_app(&mut app)
+        .run_app(app)
         .map_err(|error| ViewError::Failed(format!("the window failed: {error}")))?;
     match app.error.take() {
         Some(error) => Err(error),

@@ -24,6 +24,8 @@ pub struct Preferences {
     pub panel_width: f32,
     /// Sections of the panel that were folded or unfolded.
     pub sections: BTreeMap<String, bool>,
+    /// The error that is good enough, as a share of the mean of the picture.
+    pub target_error: f64,
     /// Size of the window in points.
     pub window: [f32; 2],
 }
@@ -36,6 +38,7 @@ impl Default for Preferences {
             panel: true,
             panel_width: 292.0,
             sections: BTreeMap::new(),
+            target_error: 0.01,
             window: [1280.0, 800.0],
         }
     }
@@ -49,6 +52,9 @@ impl Preferences {
         let usable = |x: f32, lo: f32, hi: f32| if x.is_finite() { x.clamp(lo, hi) } else { lo };
         read.panel_width = usable(read.panel_width, 240.0, 480.0);
         read.window = read.window.map(|side| usable(side, 320.0, 16_384.0));
+        if !(1e-5..=1.0).contains(&read.target_error) {
+            read.target_error = Self::default().target_error;
+        }
         read.recent.truncate(RECENT);
         read
     }

@@ -5,18 +5,17 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use super::measuring::Made;
 use super::model::Model;
 use crate::engine::film::Frame;
+use crate::engine::integrators::Hold;
 use crate::engine::scene::Scene;
-use crate::engine::scene::desc::CameraDesc;
-use crate::engine::session::{RenderJob, RenderSession, Settings};
+use crate::engine::session::{RenderJob, RenderSession};
 
 /// What the job under way was made of.
 struct Submitted {
-    scene: Arc<Scene>,
-    view: CameraDesc,
-    size: UVec2,
-    settings: Settings,
+    made: Made,
+    epoch: u64,
 }
 
 /// A session and its job.
@@ -53,6 +52,7 @@ impl Rendering {
         navigating: bool,
     ) -> Result<(), String> {
         let same = self.submitted.as_ref().is_some_and(|s| {
+            let s = &s.made;
             Arc::ptr_eq(&s.scene, scene)
                 && s.view == model.view
                 && s.size == size
@@ -62,20 +62,27 @@ impl Rendering {
             return Ok(());
         }
         let camera = model.camera(size)?;
-        self.session.submit(RenderJob {
+        let epoch = self.session.submit(RenderJob {
             scene: Arc::clone(scene),
             camera,
             size,
             settings: model.settings.clone(),
             navigating,
         });
-        self.submitted = Some(Submitted {
+        let made = Made {
             scene: Arc::clone(scene),
             view: model.view,
             size,
             settings: model.settings.clone(),
-        });
+        };
+        self.submitted = Some(Submitted { made, epoch });
         Ok(())
+    }
+
+    /// What a frame was rendered from, if its job is the one under way.
+    pub fn made(&self, frame: &Frame) -> Option<Made> {
+        let submitted = self.submitted.as_ref()?;
+        (submitted.epoch == frame.epoch).then(|| submitted.made.clone())
     }
 
     /// The newest frame, if it is another one than last time.
@@ -87,6 +94,11 @@ impl Rendering {
         }
         self.frame = Some(Arc::clone(&latest));
         Some(latest)
+    }
+
+    /// Makes the render stand still until the result is dropped.
+    pub fn hold(&self) -> Hold {
+        self.session.hold()
     }
 
     /// Pauses or goes on.

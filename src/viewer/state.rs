@@ -36,6 +36,9 @@ pub struct State {
     parameters: BTreeMap<String, String>,
     max_depth: Option<u32>,
     expressions: Vec<String>,
+    /// The whole and the components were left out.
+    #[serde(default)]
+    only_expressions: bool,
     display: SavedDisplay,
     seed: u64,
     passes: u64,
@@ -81,6 +84,7 @@ enum SavedShown {
     Whole,
     Parts([bool; PARTS]),
     Grid,
+    Expression(u8),
 }
 
 /// FNV-1a over 64 bits, in hexadecimal: tells whether a scene file has changed.
@@ -107,6 +111,7 @@ impl State {
             parameters: settings.params.iter().map(text).collect(),
             max_depth: settings.layers.max_depth,
             expressions: expressions.map(|e| e.text().to_owned()).collect(),
+            only_expressions: settings.layers.no_whole,
             display: SavedDisplay::new(&model.display),
             seed: settings.seed,
             passes,
@@ -173,6 +178,14 @@ impl State {
                 size.x, size.y
             ));
         }
+        if let Shown::Expression(i) = display.shown
+            && usize::from(i) >= settings.layers.expressions.len()
+        {
+            return Err(format!(
+                "there is no expression number {}",
+                u32::from(i) + 1
+            ));
+        }
         let mut restored = model.clone();
         restored.view = self.camera.restored(&model.view);
         restored.size = PictureSize::Fixed(size);
@@ -196,10 +209,10 @@ impl State {
             integrator,
             params,
             layers: LayerSettings {
-                components: true,
+                components: !self.only_expressions,
+                no_whole: self.only_expressions,
                 max_depth: self.max_depth,
                 expressions: expressions.map_err(|error| error.to_string())?,
-                ..LayerSettings::default()
             },
             seed: self.seed,
         })
@@ -255,6 +268,7 @@ impl SavedDisplay {
                 Shown::Whole => SavedShown::Whole,
                 Shown::Parts(on) => SavedShown::Parts(on),
                 Shown::Grid => SavedShown::Grid,
+                Shown::Expression(i) => SavedShown::Expression(i),
             },
             exposure: display.exposure,
             part_exposure: display.part_exposure,
@@ -275,6 +289,7 @@ impl SavedDisplay {
                 SavedShown::Whole => Shown::Whole,
                 SavedShown::Parts(on) => Shown::Parts(on),
                 SavedShown::Grid => Shown::Grid,
+                SavedShown::Expression(i) => Shown::Expression(i),
             },
             exposure: self.exposure,
             part_exposure: self.part_exposure,

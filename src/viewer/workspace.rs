@@ -14,14 +14,17 @@ use super::display::{EXPOSURES, Shown};
 use super::exposure::auto_exposure;
 use super::gpu::{Placement, picture_point};
 use super::history::History;
+use super::measuring::Measuring;
 use super::model::Model;
 use super::navigation;
 use super::notices::Notices;
 use super::opening::Opening;
+use super::photons::Photons;
 use super::preferences::Preferences;
 use super::source::SceneSource;
 use super::thumbnails::Thumbnail;
 use crate::engine::film::{Frame, ToneMap};
+use crate::engine::path::Expression;
 use crate::engine::scene::Scene;
 
 /// Largest magnification: a pixel is then larger than its numbers.
@@ -40,6 +43,8 @@ pub enum Request {
     Reload,
     /// Save under a new name.
     Save(Format),
+    /// Save the plot of errors under a new name that ends so: png, svg or csv.
+    SavePlot(&'static str),
     /// Save the whole window.
     SaveWindow,
     /// Copy the picture to the clipboard.
@@ -87,6 +92,10 @@ pub struct Workspace {
     pub frame_number: u64,
     /// Sum of parts against the whole.
     pub balance: Balance,
+    /// Sum of the typed expressions against the whole.
+    pub typed_balance: Balance,
+    /// What is being typed into the field of expressions.
+    pub expression_text: String,
     /// Undo and redo.
     pub history: History,
     /// Sentences for the user.
@@ -99,6 +108,8 @@ pub struct Workspace {
     pub area: UVec2,
     /// Most pixels the graphics card holds.
     pub max_pixels: u64,
+    /// Bytes of the picture on the graphics card.
+    pub gpu_bytes: u64,
     /// The hand is on the camera.
     pub navigating: bool,
     /// The button that moves the camera.
@@ -117,6 +128,10 @@ pub struct Workspace {
     pub textures: BTreeMap<&'static str, egui::TextureHandle>,
     /// The values under the cursor are shown.
     pub inspector: bool,
+    /// What is shown of photon maps.
+    pub photons: Photons,
+    /// How wrong the picture is.
+    pub measuring: Measuring,
     /// A file is being chosen.
     pub browser: Option<Browser>,
     /// Hash of the scene file as it was read.
@@ -136,11 +151,14 @@ impl Workspace {
             frame: None,
             frame_number: 0,
             balance: Balance::default(),
+            typed_balance: Balance::default(),
+            expression_text: String::new(),
             notices: Notices::default(),
             loading: None,
             requests: Vec::new(),
             area: UVec2::ZERO,
             max_pixels: u64::MAX,
+            gpu_bytes: 0,
             navigating: false,
             hold: None,
             paused: false,
@@ -150,6 +168,8 @@ impl Workspace {
             thumbnails: Vec::new(),
             textures: BTreeMap::new(),
             inspector: false,
+            photons: Photons::default(),
+            measuring: Measuring::default(),
             browser: None,
             scene_hash: String::new(),
             preferences: Preferences::default(),
@@ -188,13 +208,15 @@ impl Workspace {
         }
         if !again {
             self.placement = Placement::default();
+            self.photons.found = None;
             self.history = History::new(&self.model);
         }
     }
 
-    fn choose_file(&mut self, purpose: Purpose) {
+    /// Lets the user choose a file.
+    pub fn choose_file(&mut self, purpose: Purpose) {
         let name = match purpose {
-            Purpose::Open => String::new(),
+            Purpose::Open | Purpose::Reference => String::new(),
             Purpose::Save => format!("{}.png", self.proposed_stem()),
         };
         let recent = self
@@ -203,7 +225,7 @@ impl Workspace {
             .first()
             .and_then(|path| path.parent());
         let folder = match purpose {
-            Purpose::Open => recent.unwrap_or(Path::new(".")).to_owned(),
+            Purpose::Open | Purpose::Reference => recent.unwrap_or(Path::new(".")).to_owned(),
             Purpose::Save => PathBuf::from("."),
         };
         self.browser = Some(Browser::new(purpose, &folder, &name));
@@ -213,6 +235,52 @@ impl Workspace {
     pub fn proposed_stem(&self) -> String {
         let passes = self.frame.as_ref().map_or(0, |frame| frame.passes);
         format!("{}-{passes}spp", self.model.source.short_name())
+    }
+
+    /// Gives the paths of an expression a layer, and shows it.
+    pub fn add_expression(&mut self, expression: Expression) {
+        let list = &mut self.model.settings.layers.expressions;
+        let known = list.iter().position(|e| e.text() == expression.text());
+        let at = known.unwrap_or_else(|| {
+            list.push(expression);
+            list.len() - 1
+        });
+        self.show_expression(Some(at));
+    }
+
+    /// Shows an expression alone, or the whole.
+    pub fn show_expression(&mut self, number: Option<usize>) {
+        let shown = number.and_then(|i| u8::try_from(i).ok());
+        self.model.display.shown = shown.map_or(Shown::Whole, Shown::Expression);
+    }
+
+    /// Takes an expression's layer away.
+    pub fn remove_expression(&mut self, number: usize) {
+        self.model.settings.layers.expressions.remove(number);
+        if let Shown::Expression(i) = self.model.display.shown {
+            let i = usize::from(i);
+            let left = (i != number).then(|| i - usize::from(i > number));
+            self.show_expression(left);
+        }
+    }
+
+    /// Leaves out the whole and the components, or computes them again.
+    pub fn compute_only_expressions(&mut self, only: bool) {
+        let layers = &mut self.model.settings.layers;
+        layers.no_whole = only;
+        layers.components = !only;
+        if only && !matches!(self.model.display.shown, Shown::Expression(_)) {
+            self.show_expression(Some(0));
+        }
+    }
+
+    /// Computes again what is shown: neither the whole nor a component is there while only
+    /// expressions are computed.
+    pub fn settle(&mut self) {
+        let shows_expression = matches!(self.model.display.shown, Shown::Expression(_));
+        if self.model.settings.layers.no_whole && !shows_expression {
+            self.compute_only_expressions(false);
+        }
     }
 
     /// To be called before the hand moves the camera.
@@ -270,7 +338,8 @@ impl Workspace {
             return;
         }
         self.notices.clear_error("render");
-        self.balance.update(&frame);
+        self.balance = Balance::of_components(&frame);
+        self.typed_balance = Balance::of_expressions(&frame);
         self.frame = Some(frame);
         self.frame_number += 1;
     }
@@ -294,6 +363,7 @@ impl Workspace {
             Command::Redo => self.history.redo(&mut self.model),
             Command::Home => self.model.view = self.model.home,
             Command::Pause => self.paused = !self.paused,
+            Command::ErrorPlot => self.measuring.large = !self.measuring.large,
             Command::Panel => self.preferences.panel = !self.preferences.panel,
             Command::Help => self.help = !self.help,
             Command::Theme => self.preferences.dark = !self.preferences.dark,

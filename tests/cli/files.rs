@@ -177,3 +177,39 @@ fn png_and_hdr_hold_the_picture() {
     assert!(mean("a.png") < exact, "the lamp is cut at white");
     assert!(mean("a.png") > 0.2 * exact && mean("b.png") < mean("a.png"));
 }
+
+#[test]
+fn a_pyramid_holds_every_strategy_and_adds_up() {
+    let dir = folder();
+    let at = dir.path();
+    let bdpt = ["--integrator", "bdpt", "--spp", "4", "--max-depth", "2"];
+    render(at, "whole.exr", &bdpt);
+    render(
+        at,
+        "pyramid.exr",
+        &[&bdpt[..], &["--pyramid", "4"]].concat(),
+    );
+    render(
+        at,
+        "pyramid.png",
+        &[&bdpt[..], &["--pyramid", "4"]].concat(),
+    );
+    let (whole, exr) = (
+        Exr::read(at.join("whole.exr")),
+        Exr::read(at.join("pyramid.exr")),
+    );
+    // Paths of 2, 3 and 4 vertices have as many strategies, each two pictures of three channels.
+    assert_eq!(exr.names().len(), (2 + 3 + 4) * 2 * 3);
+    let of = |name: &str| exr.channel(name).iter().map(|x| f64::from(*x)).sum::<f64>();
+    let names = exr.names();
+    let weighted = names
+        .iter()
+        .filter(|n| n.starts_with("weighted.") && n.ends_with(".G"));
+    let sum: f64 = weighted.map(|n| of(n)).sum();
+    let expected: f64 = whole.channel("G").iter().map(|x| f64::from(*x)).sum();
+    assert!((sum / expected - 1.0).abs() < 1e-4, "{sum} {expected}");
+    assert!(of("unweighted.s2.t2.G") > of("weighted.s2.t2.G"));
+    // Four columns twice by three rows of 16 × 16 pixels.
+    let sheet = image::open(at.join("pyramid.png")).unwrap();
+    assert_eq!((sheet.width(), sheet.height()), (128, 48));
+}

@@ -3,6 +3,7 @@
 mod bad_scenes;
 mod figures;
 mod files;
+mod measuring;
 mod running;
 mod support;
 mod usage;

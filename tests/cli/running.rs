@@ -7,9 +7,9 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 
 #[cfg(unix)]
-use super::support::{Exr, command};
+use super::support::Exr;
 
-use super::support::{cornell, folder, json, reference, render, stderr, stdout, succeeds};
+use super::support::{command, cornell, folder, json, reference, render, stderr, stdout, succeeds};
 
 #[test]
 fn renders_stop_at_the_first_condition_reached() {
@@ -170,4 +170,22 @@ fn an_interrupt_writes_the_passes_that_are_complete() {
     let exr = Exr::read(dir.path().join("a.exr"));
     let passes = fs::read_to_string(&log).unwrap().lines().count();
     assert_eq!(exr.text("lightscope:spp"), passes.to_string());
+}
+
+#[test]
+fn a_reader_of_the_notes_who_goes_away_costs_no_picture() {
+    let folder = folder();
+    let scene = cornell();
+    let args = [
+        "render", &scene, "-o", "a.exr", "--size", "16x16", "--spp", "4",
+    ];
+    let mut command = command(folder.path(), &args);
+    let mut child = command
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stderr.take());
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    assert!(folder.path().join("a.exr").exists());
 }

@@ -19,6 +19,52 @@ fn wrong_usage_exits_with_2_and_says_what_would_be_right() {
     let shell = reference("cornell-diffuse/shell.obj");
     let s = scene.as_str();
     let cases: &[(&[&str], &str)] = &[
+        (
+            &["render", s, "-o", "a.exr", "--pyramid", "4"],
+            "--integrator bdpt",
+        ),
+        (
+            &[
+                "render",
+                s,
+                "-o",
+                "a.exr",
+                "--integrator",
+                "bdpt",
+                "--pyramid",
+                "1",
+            ],
+            "from 2 to 12",
+        ),
+        (
+            &[
+                "render",
+                s,
+                "-o",
+                "a.exr",
+                "--integrator",
+                "bdpt",
+                "--pyramid",
+                "4",
+                "--seconds",
+                "1",
+            ],
+            "--pyramid goes with",
+        ),
+        (
+            &[
+                "bench",
+                "integrators",
+                &reference_dir,
+                "--integrators",
+                "pth",
+            ],
+            "did you mean \"path\"?",
+        ),
+        (
+            &["bench", "integrators", &reference_dir, "--layer", "shade"],
+            "no layer \"shade\"",
+        ),
         (&["rendr"], "did you mean \"render\"?"),
         (
             &["no-such-scene"],
@@ -228,4 +274,46 @@ fn ids_win_over_files_and_a_dot_forces_the_file() {
     succeeds(dir.path(), &["info", "jensen-box"]);
     let output = lightscope(dir.path(), &["info", "./jensen-box"]);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+}
+
+#[test]
+fn a_log_does_not_replace_what_the_render_reads() {
+    let folder = folder();
+    let scene = folder.path().join("cornell.json");
+    std::fs::copy(cornell(), &scene).expect("copied");
+    let before = std::fs::read(&scene).expect("readable");
+    let args = [
+        "render",
+        "cornell.json",
+        "-o",
+        "a.exr",
+        "--log",
+        "cornell.json",
+    ];
+    let output = lightscope(folder.path(), &args);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("the log would overwrite the scene, cornell.json"));
+    assert_eq!(std::fs::read(&scene).expect("still there"), before);
+    let args = ["render", "cornell.json", "-o", "a.exr", "--log", "a.exr"];
+    let output = lightscope(folder.path(), &args);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("the log would overwrite the picture, a.exr"));
+}
+
+#[test]
+fn a_mistyped_command_is_named_whatever_follows_it() {
+    let folder = folder();
+    for args in [
+        &["rendr"][..],
+        &["rendr", "cornell"],
+        &["rendr", "-o", "a.png"],
+    ] {
+        let output = lightscope(folder.path(), args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        let said = stderr(&output);
+        assert!(
+            said.contains("did you mean \"render\"?"),
+            "{args:?}: {said}"
+        );
+    }
 }

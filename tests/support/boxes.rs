@@ -1,4 +1,5 @@
 //! Small scenes built by hand.
+#![allow(dead_code, reason = "each test binary uses a part of it")]
 
 use std::sync::Arc;
 

@@ -22,7 +22,8 @@ pub fn reference_layer(scene: &str, layer: &str, width: usize) -> Blocks {
     Blocks::from_reference(&pixels, &se, width)
 }
 
-fn read_layer(scene: &str, stem: &str) -> Vec<[f32; 3]> {
+/// Pixels of a file of a reference.
+pub fn read_layer(scene: &str, stem: &str) -> Vec<[f32; 3]> {
     let path = reference_dir(scene).join(format!("{stem}.exr"));
     let image = image::read(&path, image::Encoding::Linear).unwrap_or_else(|e| panic!("{e}"));
     image.pixels

@@ -2,7 +2,8 @@
 
 use egui_kittest::kittest::Queryable;
 use lightscope::engine::film::ToneMap;
-use lightscope::engine::integrators::{ParamKind, REGISTRY};
+use lightscope::engine::integrators::{ParamKind, REGISTRY, find};
+use lightscope::engine::session::Settings;
 use lightscope::viewer::commands::TABLE;
 use lightscope::viewer::display::Shown;
 use lightscope::viewer::model::PictureSize;
@@ -192,4 +193,76 @@ fn the_status_line_tells_samples_and_errors_stay_until_read() {
     desk.get_by_label("Dismiss").click();
     desk.run();
     assert!(desk.query_by_label("line 3 is wrong").is_none());
+}
+
+#[test]
+fn strategies_are_switched_one_by_one_and_shown_alone() {
+    let mut desk = desk();
+    desk.state_mut().model.settings = lightscope::engine::session::Settings::new(
+        lightscope::engine::integrators::find("bdpt").expect("registered"),
+    );
+    desk.run();
+    let words =
+        |desk: &crate::desk::Desk, name: &str| desk.state().model.settings.params.text(name);
+    desk.get_by_label("Table of strategies").click();
+    desk.run();
+    desk.get_by_label("1,2").click();
+    desk.run();
+    desk.get_by_label("3,1").click();
+    desk.run();
+    assert_eq!(words(&desk, "strategies"), "all-1,2-3,1");
+    desk.get_by_label("3,1").click();
+    desk.run();
+    assert_eq!(words(&desk, "strategies"), "all-1,2");
+    desk.get_by_label("Table of strategies").click();
+    desk.run();
+    desk.get_by_label("Table of picture").click();
+    desk.run_steps(30);
+    desk.get_by_label("2,2")
+        .click_modifiers(egui::Modifiers::SHIFT);
+    desk.run();
+    assert_eq!(words(&desk, "picture"), "2,2");
+}
+
+#[test]
+fn statistics_tell_what_the_walks_did() {
+    let mut desk = desk();
+    desk.get_by_label("Statistics").click();
+    desk.run();
+    let frame = desk.state().frame.clone().expect("a frame");
+    let lengths = frame.stats.lengths()[0].clone().expect("walks");
+    assert_eq!(lengths.iter().sum::<u64>(), frame.stats.samples);
+    let survival = frame.stats.survival().expect("roulette");
+    let text = format!("{:.1} %", survival * 100.0);
+    assert!(desk.query_by_label(&text).is_some(), "{text}");
+    assert!(desk.query_by_label("Walks from the eye").is_some());
+    assert!(desk.query_by_label("Walks from lights").is_none());
+}
+
+/// What is not found is said, also of what is switched off.
+#[test]
+fn what_cannot_be_found_is_said() {
+    let mut desk = desk();
+    let said = |desk: &crate::desk::Desk, what: &str| {
+        let mut found = desk.query_all_by(|node| {
+            let label = node.label().or_else(|| node.value());
+            label.is_some_and(|label| label.starts_with("Cannot find") && label.contains(what))
+        });
+        found.next().is_some()
+    };
+    assert!(!said(&desk, ""));
+    for (id, set, words) in [
+        ("whitted", None, "L.+(D|G|V).*E"),
+        ("monte-carlo", Some(("depth", "2")), "L.{3,}E"),
+        ("photon", Some(("global-map", "off")), "L.*D.*DE"),
+    ] {
+        let settings = &mut desk.state_mut().model.settings;
+        *settings = Settings::new(find(id).expect("an integrator"));
+        if let Some((name, value)) = set {
+            let specs = settings.integrator.params;
+            settings.params.set(specs, name, value).expect("a value");
+        }
+        desk.run();
+        assert!(said(&desk, words), "{id} does not say {words}");
+    }
 }

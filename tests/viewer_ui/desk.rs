@@ -45,10 +45,25 @@ pub fn workspace() -> Workspace {
 
 /// The window's contents, tall enough that nothing need be scrolled.
 pub fn desk() -> Desk {
+    desk_of(workspace())
+}
+
+/// With one section open and all others folded.
+pub fn desk_with_section(section: &str) -> Desk {
+    let mut workspace = workspace();
+    let sections = &mut workspace.preferences.sections;
+    for title in ["Algorithm", "Components", "Display", "Save"] {
+        sections.insert(title.to_owned(), false);
+    }
+    sections.insert(section.to_owned(), true);
+    desk_of(workspace)
+}
+
+fn desk_of(workspace: Workspace) -> Desk {
     Harness::builder()
         .with_size(egui::Vec2::new(1000.0, 1400.0))
         .with_context_setup(panels::apply_style)
         .with_accessibility_check(true)
         .with_step_dt(1.0 / 60.0)
-        .build_ui_state(panels::show, workspace())
+        .build_ui_state(panels::show, workspace)
 }

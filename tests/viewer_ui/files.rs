@@ -64,6 +64,17 @@ fn a_file_is_replaced_only_after_a_question() {
 }
 
 #[test]
+fn typing_replaces_the_proposed_name_and_keeps_its_kind() {
+    let mut desk = desk();
+    desk.get_by_label("Save as…").click();
+    desk.run();
+    desk.event(egui::Event::Text("mine".to_owned()));
+    desk.run();
+    let browser = desk.state().browser.as_ref().expect("a browser");
+    assert_eq!(browser.name, "mine.png");
+}
+
+#[test]
 fn cancel_and_escape_leave_the_browser() {
     let mut desk = desk();
     desk.key_press_modifiers(Modifiers::COMMAND, Key::O);
@@ -127,11 +138,32 @@ fn the_inspector_names_the_material_under_the_cursor() {
     desk.hover_at(egui::pos2(350.0, 680.0));
     desk.run();
     for name in [
-        "whole", "direct", "indirect", "samples", "material", "normal", "depth",
+        "whole",
+        "direct",
+        "indirect",
+        "std. error",
+        "samples",
+        "material",
+        "normal",
+        "depth",
     ] {
         // Components have a control of the same name.
         assert!(desk.get_all_by_label(name).count() > 0, "{name}");
     }
+}
+
+#[test]
+fn the_inspector_leaves_the_corner_that_is_pointed_at() {
+    let mut desk = desk();
+    desk.key_press(Key::I);
+    let mut left_of_middle = |x, y| {
+        desk.hover_at(egui::pos2(x, y));
+        desk.run();
+        desk.get_by_label("pixel").rect().max.x < 300.0
+    };
+    assert!(left_of_middle(650.0, 500.0));
+    assert!(!left_of_middle(650.0, 900.0));
+    assert!(!left_of_middle(40.0, 500.0));
 }
 
 #[test]

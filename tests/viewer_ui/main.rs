@@ -3,5 +3,8 @@
 
 mod controls;
 mod desk;
+mod expressions;
 mod files;
 mod hand;
+mod measuring;
+mod photons;

@@ -3,12 +3,14 @@
 #![cfg(all(feature = "viewer", target_os = "linux"))]
 
 mod files;
+mod robust;
 mod screen;
 mod walk;
+mod x11;
 
 use std::process::{Command, Stdio};
 
-use screen::{Program, Screen, reference, wait_until};
+use screen::{CLOSING, Program, Screen, reference, wait_until};
 
 #[test]
 fn without_a_display_it_says_what_works_without() {
@@ -68,6 +70,9 @@ fn closing_is_immediate_while_it_renders() {
     program.wait_for_picture();
     program.key("ctrl+q");
     // Threads are joined on the way out; a job has no end of its own.
-    assert!(wait_until(5.0, || program.has_ended()), "it does not end");
+    assert!(
+        wait_until(CLOSING, || program.has_ended()),
+        "it does not end"
+    );
     assert_eq!(program.exit_code(), Some(0));
 }

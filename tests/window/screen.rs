@@ -53,6 +53,9 @@ pub fn saved(folder: &Path, end: &str) -> PathBuf {
 /// other work beside the test.
 const PATIENCE: f64 = 90.0;
 
+/// Seconds in which a window must close.
+pub const CLOSING: f64 = 2.0;
+
 /// One screen at a time: programs that render on all cores would starve each other.
 static ALONE: Mutex<()> = Mutex::new(());
 
@@ -63,17 +66,20 @@ pub const HEIGHT: u32 = 600;
 /// A server of its own; it ends with the test.
 pub struct Screen {
     server: Child,
-    display: String,
+    /// Its name, as in DISPLAY.
+    pub display: String,
     _alone: MutexGuard<'static, ()>,
 }
 
 impl Screen {
     /// Nothing where the tools are not installed, which CI does not accept.
     pub fn start() -> Option<Self> {
-        for tool in ["Xvfb", "xdotool", "import"] {
+        for tool in ["Xvfb", "xdotool", "import", "xclip"] {
             let found = Command::new(tool).arg("-help").output().is_ok();
             if !found {
-                eprintln!("skipped: {tool} is missing; install xvfb, xdotool and imagemagick");
+                eprintln!(
+                    "skipped: {tool} is missing; install xvfb, xdotool, imagemagick and xclip"
+                );
                 assert!(std::env::var_os("CI").is_none(), "CI must have {tool}");
                 return None;
             }
@@ -158,11 +164,14 @@ pub struct Program<'a> {
 impl<'a> Program<'a> {
     /// Starts it and waits for its window, which has the keyboard then.
     pub fn start(screen: &'a Screen, folder: &Path, scene: &str) -> Self {
-        let child = screen
-            .command(folder)
-            .arg(scene)
-            .spawn()
-            .expect("it starts");
+        let mut command = screen.command(folder);
+        command.arg(scene);
+        Self::spawn(screen, command)
+    }
+
+    /// The same for a command.
+    pub fn spawn(screen: &'a Screen, mut command: Command) -> Self {
+        let child = command.spawn().expect("it starts");
         let mut program = Self {
             screen,
             child,
@@ -180,10 +189,61 @@ impl<'a> Program<'a> {
     }
 
     pub fn key(&self, key: &str) {
+        self.focus();
+        self.screen.xdotool(&["key", key]);
+    }
+
+    /// Holds a key for `seconds`.
+    pub fn hold(&self, key: &str, seconds: f64) {
+        self.focus();
+        self.screen.xdotool(&["keydown", key]);
+        std::thread::sleep(Duration::from_secs_f64(seconds));
+        self.screen.xdotool(&["keyup", key]);
+    }
+
+    /// Types a text as a hand does.
+    pub fn type_text(&self, text: &str) {
+        self.focus();
+        self.screen.xdotool(&["type", "--delay", "60", text]);
+    }
+
+    fn focus(&self) {
         // Without a window manager nobody else gives the window the keyboard.
         self.screen
             .xdotool(&["windowfocus", "--sync", &self.window]);
-        self.screen.xdotool(&["key", key]);
+    }
+
+    /// Number of the window.
+    pub fn window(&self) -> &str {
+        &self.window
+    }
+
+    /// Takes the window from the screen, as minimising does.
+    pub fn hide(&self) {
+        self.screen
+            .xdotool(&["windowunmap", "--sync", &self.window]);
+    }
+
+    /// Shows it again.
+    pub fn unhide(&self) {
+        self.screen.xdotool(&["windowmap", "--sync", &self.window]);
+    }
+
+    /// Turns the wheel by so many notches, forward if positive.
+    pub fn wheel(&self, at: [i32; 2], notches: i32) {
+        let [x, y] = at.map(|v| v.to_string());
+        self.screen.xdotool(&["mousemove", &x, &y]);
+        let button = if notches > 0 { "4" } else { "5" };
+        let times = notches.unsigned_abs().to_string();
+        self.screen
+            .xdotool(&["click", "--repeat", &times, "--delay", "40", button]);
+    }
+
+    /// What is on the clipboard as a picture, if there is one.
+    pub fn clipboard(&self) -> Option<RgbImage> {
+        let args = ["-selection", "clipboard", "-t", "image/png", "-o"];
+        let output = self.screen.tool("xclip", &args);
+        Some(image::load_from_memory(&output.stdout).ok()?.to_rgb8())
     }
 
     pub fn resize(&self, width: u32, height: u32) {
@@ -250,7 +310,7 @@ impl<'a> Program<'a> {
     /// Closes the window, which must be quick and leave no error.
     pub fn quit(&mut self) {
         self.key("ctrl+q");
-        assert!(wait_until(5.0, || self.has_ended()), "it does not end");
+        assert!(wait_until(CLOSING, || self.has_ended()), "it does not end");
         assert_eq!(self.exit_code(), Some(0));
     }
 

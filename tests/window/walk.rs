@@ -17,6 +17,33 @@ fn drag_resize_solo_screenshot_quit() {
     program.key("Home");
     program.wait_for("Home leads back", |p| difference(p, &still) < 3.0);
 
+    type Move<'a> = (&'a str, &'a dyn Fn());
+    let moves: [Move; 4] = [
+        ("a right drag pans", &|| {
+            program.drag("3", [250, 250], [90, 60])
+        }),
+        ("the wheel comes closer", &|| program.wheel([250, 250], 3)),
+        ("the wheel goes away", &|| program.wheel([250, 250], -3)),
+        ("W flies", &|| program.hold("w", 0.6)),
+    ];
+    for (what, act) in moves {
+        act();
+        program.wait_for(what, |p| difference(p, &still) > 3.0);
+        program.key("Home");
+        program.wait_for("Home leads back", |p| difference(p, &still) < 3.0);
+    }
+    program.drag("1", [250, 250], [120, 40]);
+    program.wait_for("a drag turns the view", |p| difference(p, &still) > 8.0);
+    program.key("ctrl+z");
+    program.wait_for("undo turns it back", |p| difference(p, &still) < 3.0);
+
+    program.key("5");
+    program.wait_for("four pictures, two of them dark in this scene", |p| {
+        let tile = |x, y| mean(&image::imageops::crop_imm(p, x, y, 150, 150).to_image());
+        let [direct, specular] = [tile(60, 80), tile(340, 80)];
+        let [caustic, indirect] = [tile(60, 380), tile(340, 380)];
+        direct > 15.0 && indirect > 15.0 && specular < 2.0 && caustic < 2.0
+    });
     program.key("3");
     program.wait_for("there are no caustics here", |p| mean(p) < 2.0);
     program.key("0");

@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::cli::args::BenchPhotonsArgs;
 use crate::cli::bench_photons::{self, MapFigures};
 use crate::cli::error::CliError;
+use crate::cli::print::note;
 use crate::cli::print::{self, bytes, figure};
 use crate::cli::scene;
 
@@ -32,7 +33,7 @@ pub fn run(args: &BenchPhotonsArgs) -> Result<(), CliError> {
     }
     let mut maps = Vec::new();
     for photons in &args.photons {
-        eprintln!("{photons} photons");
+        note!("{photons} photons");
         let timed = bench_photons::build(&scene, *photons as usize);
         maps.push(bench_photons::queries(
             &timed,

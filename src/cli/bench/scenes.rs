@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::args::BenchScenesArgs;
 use crate::cli::error::CliError;
+use crate::cli::print::note;
 use crate::cli::print::{self, figure};
 use crate::cli::{picture, render, scene};
 use crate::engine::integrators::Cancel;
@@ -40,7 +41,7 @@ pub fn run(args: &BenchScenesArgs) -> Result<(), CliError> {
     let pool = render::thread_pool(1)?;
     let mut rows = Vec::new();
     for folder in &args.folders {
-        eprintln!("{}: {} s of process time", folder.display(), args.seconds);
+        note!("{}: {} s of process time", folder.display(), args.seconds);
         rows.push(pool.install(|| measure(folder, &settings, args.seconds))?);
     }
     if args.json {

@@ -5,7 +5,7 @@ mod read;
 mod write;
 
 pub use output::{Format, Output};
-pub use read::{read, read_reference};
+pub use read::{error_image_path, read, read_reference};
 pub use write::{Attributes, write};
 
 pub use crate::picture::{Layer, Picture, WHOLE};

@@ -1,6 +1,7 @@
 //! Reading pictures and references.
 
-use std::path::Path;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 
@@ -8,7 +9,7 @@ use super::output::{Format, folder};
 use super::{Layer, Picture, WHOLE};
 use crate::cli::error::CliError;
 use crate::engine::io::image::{self, Encoding};
-use crate::picture::{exr_file, labels};
+use crate::picture::{exr_file, hdr_file, labels, png_file};
 
 /// Reads a picture file.
 pub fn read(path: &Path) -> Result<Picture, CliError> {
@@ -37,11 +38,26 @@ fn flat(path: &Path, encoding: Encoding) -> Result<Picture, CliError> {
             pixels: image.pixels,
         }],
         standard_errors: Vec::new(),
-        attributes: Vec::new(),
+        attributes: texts(path),
     })
 }
 
-/// Reads a reference: a picture, or `ref.exr` in a folder together with what lies beside it.
+/// What the file says about its origin.
+fn texts(path: &Path) -> Vec<(String, String)> {
+    // The file was read a moment ago; what has gone since then says nothing.
+    let Ok(file) = std::fs::File::open(path).map(BufReader::new) else {
+        return Vec::new();
+    };
+    let mut texts = match Format::of(path) {
+        Some(Format::Png) => png_file::read_texts(file),
+        Some(Format::Hdr) => hdr_file::read_texts(file),
+        _ => Vec::new(),
+    };
+    texts.sort();
+    texts
+}
+
+/// Reads a reference: a picture, or `ref.exr` in a folder together with what lies beside it. Standard errors are in files of their own (`ref_se.exr`, `direct_se.exr` …) or all in one.
 pub fn read_reference(path: &Path) -> Result<Picture, CliError> {
     let main = if path.is_dir() {
         path.join("ref.exr")
@@ -52,7 +68,20 @@ pub fn read_reference(path: &Path) -> Result<Picture, CliError> {
     if main.file_name().is_some_and(|name| name == "ref.exr") {
         read_beside(folder(&main), &mut picture)?;
     }
+    let beside = error_image_path(&main);
+    if picture.standard_errors.is_empty() && beside.exists() {
+        let errors = read(&beside)?;
+        if errors.size == picture.size {
+            picture.standard_errors = errors.layers;
+        }
+    }
     Ok(picture)
+}
+
+/// The file of standard errors beside a reference: `NAME_se.exr` beside `NAME.exr`.
+pub fn error_image_path(reference: &Path) -> PathBuf {
+    let stem = reference.file_stem().unwrap_or_default().to_string_lossy();
+    reference.with_file_name(format!("{stem}_se.exr"))
 }
 
 /// Adds the components and the standard errors that lie in the folder as files of their own.

@@ -1,16 +1,12 @@
 //! Writing what was rendered.
 
-use image::Rgb;
-use image::codecs::hdr::HdrEncoder;
-
 use super::output::{Format, Output};
 use crate::cli::error::CliError;
 use crate::cli::render::RenderOptions;
-use crate::cli::scene::parameter_text;
 use crate::engine::film::Frame;
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
 use crate::engine::io::atomic;
-use crate::picture::{exr_file, png_file};
+use crate::picture::{exr_file, hdr_file, origin, png_file};
 
 /// What a file says about its origin.
 pub struct Attributes(Vec<(String, String)>);
@@ -18,33 +14,7 @@ pub struct Attributes(Vec<(String, String)>);
 impl Attributes {
     /// Of a render.
     pub fn of(scene: &str, options: &RenderOptions, frame: &Frame) -> Self {
-        let settings = &options.settings;
-        let error = frame
-            .relative_error
-            .map_or("unknown".to_owned(), |e| e.to_string());
-        let mut texts = vec![
-            ("lightscope:scene".to_owned(), scene.to_owned()),
-            (
-                "lightscope:integrator".to_owned(),
-                settings.integrator.id.to_owned(),
-            ),
-            (
-                "lightscope:parameters".to_owned(),
-                parameter_text(&settings.params),
-            ),
-            ("lightscope:spp".to_owned(), frame.passes.to_string()),
-            ("lightscope:seconds".to_owned(), frame.t_wall.to_string()),
-            ("lightscope:seed".to_owned(), settings.seed.to_string()),
-            (
-                "lightscope:version".to_owned(),
-                env!("CARGO_PKG_VERSION").to_owned(),
-            ),
-            ("lightscope:error".to_owned(), error),
-        ];
-        for (i, expression) in settings.layers.expressions.iter().enumerate() {
-            texts.push((format!("expr{}", i + 1), expression.text().to_owned()));
-        }
-        Self(texts)
+        Self(origin::texts(scene, &options.settings, frame))
     }
 }
 
@@ -58,7 +28,8 @@ pub fn write(
     let bytes = match format {
         Format::Exr => exr(options, frame, attributes),
         Format::Png => png(options, frame, attributes),
-        Format::Hdr => hdr(frame),
+        Format::Hdr => hdr_file::encode(frame.size, &frame.layers[0].pixels, &attributes.0)
+            .map_err(|error| error.to_string()),
     };
     let bytes = bytes.map_err(|error| CliError::failed(format!("{}: {error}", path.display())))?;
     atomic::write(path, &bytes)
@@ -93,19 +64,4 @@ fn png(options: &RenderOptions, frame: &Frame, attributes: &Attributes) -> Resul
     };
     let pixels: Vec<[u8; 3]> = frame.layers[0].pixels.iter().map(shown).collect();
     png_file::encode(frame.size, &pixels, &attributes.0).map_err(|error| error.to_string())
-}
-
-/// The format knows no NaN: such pixels are black.
-fn hdr(frame: &Frame) -> Result<Vec<u8>, String> {
-    let number = |x: f32| if x.is_nan() { 0.0 } else { x };
-    let pixels: Vec<Rgb<f32>> = frame.layers[0]
-        .pixels
-        .iter()
-        .map(|rgb| Rgb(rgb.map(number)))
-        .collect();
-    let mut bytes = Vec::new();
-    HdrEncoder::new(&mut bytes)
-        .encode(&pixels, frame.size.x as usize, frame.size.y as usize)
-        .map_err(|error| error.to_string())?;
-    Ok(bytes)
 }

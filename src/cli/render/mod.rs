@@ -4,9 +4,11 @@ mod log;
 mod notes;
 mod options;
 mod progress;
+mod pyramid;
 mod sequence;
 mod stop;
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -16,13 +18,14 @@ use super::args::RenderArgs;
 use super::error::CliError;
 use super::picture::{self, Attributes};
 use super::scene;
+use crate::cli::print::note;
 use crate::engine::film::Frame;
 use crate::engine::integrators::{Cancel, Cancelled};
 use crate::engine::measure::Metrics;
 use crate::engine::scene::SceneDesc;
 use crate::engine::session::{RenderClock, RenderJob, Renderer};
 use log::Log;
-pub use options::RenderOptions;
+pub use options::{RenderOptions, expressions};
 use progress::Progress;
 use stop::State;
 
@@ -37,6 +40,10 @@ pub fn run(args: RenderArgs) -> Result<(), CliError> {
 /// Renders one frame; a still has one.
 fn picture_of(args: &RenderArgs, frame: u32, cancel: &Cancel) -> Result<(), CliError> {
     let options = RenderOptions::new(args)?;
+    if let Some(most) = args.pyramid {
+        return pyramid::run(args, &options, most);
+    }
+    refuse_to_overwrite_inputs(args)?;
     let desc = scene::read_frame(&args.scene, frame)?;
     let size = options
         .size
@@ -82,14 +89,12 @@ fn render(
             break;
         }
         log.pass(&mut renderer)?;
-        let state = State::of(
-            &mut renderer,
-            options.stop.error.is_some() || progress.is_due(),
-        );
+        let look = options.stop.looks_at(renderer.passes()) || progress.is_due();
+        let state = State::of(&mut renderer, look);
         progress.update(&state);
         if let Some(note) = options.stop.reached(&state) {
             progress.clear();
-            eprintln!("done: {note}");
+            note!("done: {note}");
             break;
         }
     }
@@ -112,7 +117,7 @@ fn render(
 fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Result<(), CliError> {
     let frame = &rendered.frame;
     if rendered.interrupted {
-        eprintln!(
+        note!(
             "note: interrupted; the picture holds the {} passes that were complete",
             frame.passes
         );
@@ -120,12 +125,38 @@ fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Re
     let attributes = Attributes::of(&rendered.scene, options, frame);
     picture::write(options, frame, &attributes)?;
     for fact in &rendered.frame.facts {
-        eprintln!("{}: {}", fact.label, fact.value);
+        note!("{}: {}", fact.label, fact.value);
     }
-    eprintln!("wrote {}", options.output.path.display());
+    note!("wrote {}", options.output.path.display());
     notes::print_after(frame, rendered.errors.as_ref());
     if args.json {
         super::print::json(&notes::figures(frame, rendered.errors.as_ref()))?;
+    }
+    Ok(())
+}
+
+/// A log or a picture must not replace what the render reads, nor each other.
+fn refuse_to_overwrite_inputs(args: &RenderArgs) -> Result<(), CliError> {
+    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let scene = Path::new(&args.scene);
+    let mut taken = vec![(real(scene), "the scene")];
+    taken.extend(
+        args.reference
+            .as_deref()
+            .map(|r| (real(r), "the reference")),
+    );
+    let outputs = [
+        (Some(&args.output), "the picture"),
+        (args.log.as_ref(), "the log"),
+    ];
+    for (path, what) in outputs {
+        let Some(path) = path else { continue };
+        if let Some((_, other)) = taken.iter().find(|(t, _)| *t == real(path)) {
+            let path = path.display();
+            let message = format!("{what} would overwrite {other}, {path}; give it another name");
+            return Err(CliError::usage(message));
+        }
+        taken.push((real(path), what));
     }
     Ok(())
 }
@@ -140,7 +171,7 @@ pub(super) fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, CliError>
 }
 
 /// A token that Ctrl-C cancels. A second Ctrl-C ends the program at once.
-fn cancel_on_interrupt() -> Result<Cancel, CliError> {
+pub(super) fn cancel_on_interrupt() -> Result<Cancel, CliError> {
     let newest = Arc::new(AtomicU64::new(0));
     let cancel = Cancel::new(Arc::clone(&newest), 0);
     let handler = move || {

@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 use crate::cli::print::figure;
+use crate::cli::print::note;
 use crate::cli::scene::parameter_text;
 use crate::engine::film::Frame;
 use crate::engine::integrators::BadSample;
-use crate::engine::measure::Metrics;
+use crate::engine::measure::{Metrics, unseen};
 use crate::engine::plan::RenderPlan;
 use crate::engine::session::RenderJob;
 
@@ -15,20 +16,25 @@ pub fn print_before(job: &RenderJob, plan: &RenderPlan, threads: usize) {
     let settings = &job.settings;
     let (id, params) = (settings.integrator.id, parameter_text(&settings.params));
     let (width, height) = (job.size.x, job.size.y);
-    eprintln!(
+    note!(
         "{}: {width}x{height}, {id} ({params}), seed {}, {threads} threads",
-        job.scene.name, settings.seed
+        job.scene.name,
+        settings.seed
     );
+    if let Some(unseen) = unseen(settings.integrator.id, &settings.params) {
+        note!("note: the estimated error is noise alone; {unseen}");
+    }
     for warning in &job.scene.warnings {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     for left_out in &plan.left_out {
-        eprintln!("left out: {} ({})", left_out.what, left_out.why);
+        note!("left out: {} ({})", left_out.what, left_out.why);
     }
     if let Some(missing) = (settings.integrator.missing)(&job.scene.features, &settings.params) {
-        eprintln!(
+        note!(
             "warning: {id} cannot find {} here: {}",
-            missing.words, missing.why
+            missing.words,
+            missing.why
         );
     }
 }
@@ -44,12 +50,22 @@ pub struct Figures {
     samples_per_second: f64,
     /// Estimated RMSE / image mean.
     error: Option<f64>,
+    /// Its 95 % interval.
+    error_interval: Option<[f64; 2]>,
     non_finite: u64,
     cut_paths: u64,
     /// Trees of rays cut at their largest number.
     cut_trees: u64,
     /// Rays of walks from the eye by the number of events before them, up to the last that has any.
     rays_by_level: Vec<u64>,
+    /// The same of walks from the lights.
+    light_rays_by_level: Vec<u64>,
+    /// Walks from the eye by the number of their events; absent for trees of rays.
+    walk_lengths: Option<Vec<u64>>,
+    /// Walks from the lights by the number of their events.
+    light_walk_lengths: Option<Vec<u64>>,
+    /// Share of the games of Russian roulette that walks survived.
+    roulette_survival: Option<f64>,
     /// Share of the mutations of Markov chains that were accepted.
     acceptance: Option<f64>,
     /// Against the reference.
@@ -59,6 +75,7 @@ pub struct Figures {
 
 /// The figures of a finished frame.
 pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
+    let [walk_lengths, light_walk_lengths] = frame.stats.lengths();
     let per_second = 1.0 / frame.t_wall.max(f64::MIN_POSITIVE);
     Figures {
         t_wall: frame.t_wall,
@@ -68,10 +85,15 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
         mrays_per_second: frame.stats.rays as f64 * per_second * 1e-6,
         samples_per_second: frame.stats.samples as f64 * per_second,
         error: frame.relative_error,
+        error_interval: frame.error_estimate.and_then(|e| e.relative_interval()),
         non_finite: frame.stats.non_finite,
         cut_paths: frame.stats.cut_paths,
         cut_trees: frame.stats.cut_trees,
         rays_by_level: frame.stats.levels().to_vec(),
+        light_rays_by_level: frame.stats.light_levels().to_vec(),
+        walk_lengths,
+        light_walk_lengths,
+        roulette_survival: frame.stats.survival(),
         acceptance: frame.stats.acceptance(),
         reference: reference.copied(),
     }
@@ -80,8 +102,14 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
 /// The figures, and what went wrong on the way.
 pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
     let f = figures(frame, reference);
-    let error = f.error.map_or("unknown".to_owned(), figure);
-    eprintln!(
+    let interval = f.error_interval.map(|i| i.map(figure));
+    let error = f
+        .error
+        .zip(interval)
+        .map_or("unknown".to_owned(), |(e, [low, high])| {
+            format!("{} (95 %: {low} to {high})", figure(e))
+        });
+    note!(
         "t_wall {} s, t_cpu {} s, {} spp, {} rays, {} Mrays/s, {} samples/s, error {error}",
         figure(f.t_wall),
         figure(f.t_cpu),
@@ -90,52 +118,67 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
         figure(f.mrays_per_second),
         figure(f.samples_per_second),
     );
-    if !f.rays_by_level.is_empty() {
-        let levels: Vec<String> = f.rays_by_level.iter().map(u64::to_string).collect();
-        eprintln!(
-            "rays from the eye after 0, 1, 2 … events: {}",
-            levels.join(" ")
-        );
+    let none = Vec::new();
+    for (what, counts) in [
+        ("rays from the eye after", &f.rays_by_level),
+        ("rays from the lights after", &f.light_rays_by_level),
+        (
+            "walks from the eye of",
+            f.walk_lengths.as_ref().unwrap_or(&none),
+        ),
+        (
+            "walks from the lights of",
+            f.light_walk_lengths.as_ref().unwrap_or(&none),
+        ),
+    ] {
+        if !counts.is_empty() {
+            let counts: Vec<String> = counts.iter().map(u64::to_string).collect();
+            note!("{what} 0, 1, 2 … events: {}", counts.join(" "));
+        }
+    }
+    if let Some(survival) = f.roulette_survival {
+        note!("roulette survived: {} %", figure(100.0 * survival));
     }
     if let Some(acceptance) = f.acceptance {
-        eprintln!("accepted mutations: {} %", figure(100.0 * acceptance));
+        note!("accepted mutations: {} %", figure(100.0 * acceptance));
     }
     if let Some(m) = reference {
         let nmse = m.nmse.map_or("undefined".to_owned(), figure);
         let (rmse, relmse) = (figure(m.rmse), figure(m.relmse));
-        eprintln!("against the reference: rmse {rmse}, relmse {relmse}, nmse {nmse}");
+        note!("against the reference: rmse {rmse}, relmse {relmse}, nmse {nmse}");
     }
     if f.non_finite > 0 {
         let first = frame.stats.first_non_finite.map_or_else(String::new, place);
-        eprintln!(
+        note!(
             "warning: {} samples were not finite and were left out{first}",
             f.non_finite
         );
     }
     if f.cut_paths > 0 {
-        eprintln!(
+        note!(
             "warning: {} paths were cut at the largest number of events",
             f.cut_paths
         );
     }
     if frame.stats.exceeded_majorants > 0 {
-        eprintln!(
+        note!(
             "warning: {} times a medium was denser than the bound on it, so that it is rendered \
              thinner than it is; raise majorant_scale",
             frame.stats.exceeded_majorants
         );
     }
     if frame.stats.dark_starts > 0 {
-        eprintln!(
+        note!(
             "warning: no independent sample found light, so that the Markov chains had nowhere to \
              start from and what they add is black; raise bootstrap"
         );
     }
     if f.cut_trees > 0 {
-        eprintln!(
+        note!(
             "warning: {} of {} trees of rays were cut at their largest number: the picture is too \
              dark; raise max-rays, or lower rays or depth",
-            f.cut_trees, frame.stats.samples
+            f.cut_trees,
+            frame.stats.samples
         );
     }
 }

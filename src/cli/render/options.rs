@@ -73,10 +73,19 @@ impl RenderOptions {
     }
 }
 
-/// Reads the expressions, alone and all together.
 fn layers(args: &RenderArgs) -> Result<LayerSettings, CliError> {
+    Ok(LayerSettings {
+        expressions: expressions(&args.expression)?,
+        components: args.components,
+        no_whole: args.no_whole,
+        max_depth: args.max_depth,
+    })
+}
+
+/// Reads the expressions, alone and all together.
+pub fn expressions(texts: &[String]) -> Result<Vec<Expression>, CliError> {
     let mut expressions = Vec::new();
-    for text in &args.expression {
+    for text in texts {
         let expression: Expression = text
             .parse()
             .map_err(|error: ExpressionError| CliError::usage(error.to_string()))?;
@@ -84,10 +93,5 @@ fn layers(args: &RenderArgs) -> Result<LayerSettings, CliError> {
     }
     PathClasses::with_components(&expressions)
         .map_err(|error| CliError::usage(error.to_string()))?;
-    Ok(LayerSettings {
-        expressions,
-        components: args.components,
-        no_whole: args.no_whole,
-        max_depth: args.max_depth,
-    })
+    Ok(expressions)
 }

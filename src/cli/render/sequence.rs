@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::picture_of;
 use crate::cli::args::RenderArgs;
 use crate::cli::error::CliError;
+use crate::cli::print::note;
 use crate::cli::scene;
 
 /// Stands in the output's name for the number of the frame.
@@ -37,7 +38,7 @@ pub fn run(args: &RenderArgs, frames: &str) -> Result<(), CliError> {
         if cancel.check().is_err() {
             return Err(CliError::failed(format!("stopped before frame {frame}")));
         }
-        eprintln!("frame {frame} of {first} to {last}");
+        note!("frame {frame} of {first} to {last}");
         let mut one = args.clone();
         one.output = numbered(&name, places, frame);
         picture_of(&one, frame, &cancel)?;

@@ -30,6 +30,8 @@ pub struct State {
     pub rays: u64,
     /// Estimated RMSE / image mean, where it was asked for and exists.
     pub error: Option<f64>,
+    /// Whether it was asked for.
+    pub looked: bool,
 }
 
 impl State {
@@ -48,6 +50,7 @@ impl State {
             t_wall,
             rays: renderer.stats().rays,
             error,
+            looked: with_error,
         };
         renderer.clock().resume();
         state
@@ -65,6 +68,12 @@ impl Stop {
         }
     }
 
+    /// Whether the error is looked at after pass `pass`: each look is one more chance to stop at
+    /// an estimate that is low by luck, and takes time. Two of a hundred passes are enough.
+    pub fn looks_at(&self, pass: u64) -> bool {
+        self.error.is_some() && pass.is_multiple_of((pass / 50).max(1))
+    }
+
     /// Why the render is done; none while it is not.
     pub fn reached(&self, state: &State) -> Option<&'static str> {
         if self.spp.is_some_and(|spp| state.passes >= spp) {
@@ -75,7 +84,7 @@ impl Stop {
         }
         match (self.error, state.error) {
             (Some(goal), Some(error)) if error <= goal => Some("error reached"),
-            (Some(_), None) if state.passes >= BLACK_PASSES => {
+            (Some(_), None) if state.looked && state.passes >= BLACK_PASSES => {
                 Some("the picture stays black, so there is no relative error to reach")
             }
             _ => None,
@@ -109,6 +118,7 @@ mod tests {
             t_wall,
             rays: 0,
             error,
+            looked: true,
         }
     }
 
@@ -136,6 +146,21 @@ mod tests {
         let stop = Stop::new(None, None, Some(0.01));
         assert_eq!(stop.reached(&state(BLACK_PASSES - 1, 1.0, None)), None);
         assert!(stop.reached(&state(BLACK_PASSES, 1.0, None)).is_some());
+        let unseen = State {
+            looked: false,
+            ..state(BLACK_PASSES, 1.0, None)
+        };
+        assert_eq!(stop.reached(&unseen), None);
+    }
+
+    #[test]
+    fn the_error_is_looked_at_rarely_enough_and_often_enough() {
+        let stop = Stop::new(None, None, Some(0.1));
+        assert!((1..100).all(|pass| stop.looks_at(pass)));
+        let looks: Vec<u64> = (1..10_000).filter(|p| stop.looks_at(*p)).collect();
+        let gaps = looks.windows(2).map(|w| w[1] as f64 / w[0] as f64);
+        assert!(looks.len() < 500 && gaps.skip(100).fold(0.0, f64::max) < 1.03);
+        assert!(!Stop::new(Some(9), None, None).looks_at(1));
     }
 
     #[test]

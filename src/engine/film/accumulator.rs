@@ -4,6 +4,7 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use super::frame::FrameLayer;
+use super::halves::{ErrorEstimate, HalfSums, PixelHalves, TileHalves};
 use super::pass_buffer::{PassBuffer, PassTile};
 use super::splats::SplatBuffer;
 use super::tiles::{TILE_PIXELS, Tiles};
@@ -19,6 +20,8 @@ pub struct Film {
     passes: u64,
     /// What the means are multiplied by.
     scale: f64,
+    /// Passes at which the tiles' marks were set, the newer one first; 0 before that.
+    marked: [u64; 2],
 }
 
 /// Invariant: what planes hold counts only once the film has a pass. The first one makes them
@@ -33,6 +36,8 @@ struct FilmTile {
     planes: Vec<Plane>,
     /// Samples that were not finite, a pixel (even and odd passes).
     rejected: Option<Box<[[u32; 2]; TILE_PIXELS]>>,
+    /// Even less odd sums of the whole at two earlier passes: see [`super::halves`].
+    marks: [Option<Box<[[f32; 3]; TILE_PIXELS]>>; 2],
 }
 
 impl FilmTile {
@@ -81,6 +86,18 @@ impl FilmTile {
         }
     }
 
+    /// Takes note of even less odd sums.
+    fn mark(&mut self) {
+        let [Some(whole), Some(even)] = [self.planes.first(), self.planes.last()] else {
+            return;
+        };
+        self.marks.swap(0, 1);
+        let mark = self.marks[0].get_or_insert_with(|| Box::new([[0.0; 3]; TILE_PIXELS]));
+        for ((mark, even), whole) in mark.iter_mut().zip(even.iter()).zip(whole.iter()) {
+            *mark = [0, 1, 2].map(|c| (2.0 * even[c] - whole[c]) as f32);
+        }
+    }
+
     /// Finite samples of the pixel at `place` among `passes` passes, of the even and odd ones.
     fn counts(&self, place: usize, passes: u64) -> [u64; 2] {
         let rejected = self.rejected.as_ref().map_or([0; 2], |r| r[place]);
@@ -123,6 +140,7 @@ impl Film {
             data: vec![FilmTile::default(); tiles.len()],
             passes: 0,
             scale: 1.0,
+            marked: [0; 2],
         }
     }
 
@@ -131,6 +149,7 @@ impl Film {
     pub fn reuse(mut self, size: UVec2, planned: u32) -> Option<Self> {
         self.passes = 0;
         self.scale = 1.0;
+        self.marked = [0; 2];
         (self.size() == size && self.planned == planned).then_some(self)
     }
 
@@ -147,7 +166,8 @@ impl Film {
     /// Memory of the sums in bytes.
     pub fn bytes(&self) -> usize {
         let planes = 2 + self.planned.count_ones() as usize;
-        self.data.len() * planes * size_of::<[[f64; 3]; TILE_PIXELS]>()
+        let marks = 2 * size_of::<[[f32; 3]; TILE_PIXELS]>();
+        self.data.len() * (planes * size_of::<[[f64; 3]; TILE_PIXELS]>() + marks)
     }
 
     /// Adds a completed pass.
@@ -158,7 +178,7 @@ impl Film {
             .par_iter_mut()
             .zip(pass.data())
             .for_each(|(film, pass)| film.add(pass, index));
-        self.passes += 1;
+        self.completed();
     }
 
     /// Adds a completed pass of splats, and of camera samples if it had any. The splats of a pass
@@ -172,7 +192,16 @@ impl Film {
             }
             film.add_splats(splats.tile(i), index, samples.is_none());
         });
+        self.completed();
+    }
+
+    /// Counts a pass, and marks powers of two.
+    fn completed(&mut self) {
         self.passes += 1;
+        if self.passes >= 2 && self.passes.is_power_of_two() {
+            self.data.par_iter_mut().for_each(FilmTile::mark);
+            self.marked = [self.passes, self.marked[0]];
+        }
     }
 
     /// Sets what all means are multiplied by: for sums whose normalisation is itself estimated,
@@ -190,23 +219,11 @@ impl Film {
         if self.passes == 0 || out.is_empty() {
             return;
         }
-        let rows = size.x as usize * super::tiles::TILE as usize;
-        let columns = size.x.div_ceil(super::tiles::TILE) as usize;
-        out.par_chunks_mut(rows)
-            .enumerate()
-            .for_each(|(tile_row, rows)| {
-                let top = tile_row as u32 * super::tiles::TILE;
-                for t in tile_row * columns..(tile_row + 1) * columns {
-                    let tile = &self.data[t];
-                    for (place, pixel) in self.tiles.pixels(t) {
-                        let [even, odd] = tile.counts(place, self.passes);
-                        let scale = self.scale / (even + odd) as f64;
-                        let sum = tile.planes[plane][place];
-                        rows[((pixel.y - top) * size.x + pixel.x) as usize] =
-                            sum.map(|s| (s * scale) as f32);
-                    }
-                }
-            });
+        self.by_rows(out, |tile, place| {
+            let [even, odd] = tile.counts(place, self.passes);
+            let scale = self.scale / (even + odd) as f64;
+            tile.planes[plane][place].map(|s| (s * scale) as f32)
+        });
     }
 
     /// Means of the whole and of layer after layer; layers without a plane are zero.
@@ -228,34 +245,97 @@ impl Film {
         }
     }
 
-    /// Estimated RMSE of the whole over pixels and channels, divided by the image mean: half the
-    /// RMS difference of the two independent halves. None before each half has a pass, and for a
-    /// black image.
-    pub fn relative_error(&self) -> Option<f64> {
+    /// Halved differences of the two halves of the whole, weighted so that their squares estimate
+    /// the variance of the mean; NaN in pixels that one half lacks. Empty before each half has a
+    /// pass.
+    pub fn resolve_differences(&self, out: &mut Vec<[f32; 3]>) {
+        out.clear();
+        if self.passes < 2 {
+            return;
+        }
+        let size = self.size();
+        out.resize(layers_len(size), [f32::NAN; 3]);
+        let halves = 1 + self.planned.count_ones() as usize;
+        self.by_rows(out, |tile, place| {
+            let [even, odd] = tile.counts(place, self.passes);
+            let (n_even, n_odd) = (even as f64, odd as f64);
+            let (total, half) = (tile.planes[0][place], tile.planes[halves][place]);
+            // Var(a − b) = σ²(1/nₑ + 1/nₒ), and the mean's variance is σ²/(nₑ + nₒ).
+            let weight = self.scale * (n_even * n_odd).sqrt() / (n_even + n_odd);
+            std::array::from_fn(|c| {
+                let difference = half[c] / n_even - (total[c] - half[c]) / n_odd;
+                (difference * weight) as f32
+            })
+        });
+    }
+
+    /// Writes what `value` says of each pixel, given its tile and its place there, to `out`, row
+    /// by row from the top.
+    fn by_rows(&self, out: &mut [[f32; 3]], value: impl Fn(&FilmTile, usize) -> [f32; 3] + Sync) {
+        let size = self.size();
+        let rows = size.x as usize * super::tiles::TILE as usize;
+        let columns = size.x.div_ceil(super::tiles::TILE) as usize;
+        out.par_chunks_mut(rows)
+            .enumerate()
+            .for_each(|(tile_row, rows)| {
+                let top = tile_row as u32 * super::tiles::TILE;
+                for t in tile_row * columns..(tile_row + 1) * columns {
+                    let tile = &self.data[t];
+                    for (place, pixel) in self.tiles.pixels(t) {
+                        rows[((pixel.y - top) * size.x + pixel.x) as usize] = value(tile, place);
+                    }
+                }
+            });
+    }
+
+    /// Estimated error of the whole, from its two halves. None before each half has a pass.
+    pub fn error_estimate(&self) -> Option<ErrorEstimate> {
         if self.passes < 2 {
             return None;
         }
-        let (mut sum, mut squares, mut n) = (0.0, 0.0, 0u64);
-        let halves = 1 + self.planned.count_ones() as usize;
-        for (t, tile) in self.data.iter().enumerate() {
-            for (place, _) in self.tiles.pixels(t) {
-                let [even, odd] = tile.counts(place, self.passes);
-                if even == 0 || odd == 0 {
-                    continue;
-                }
-                let (total, half) = (tile.planes[0][place], tile.planes[halves][place]);
-                let (n_even, n_odd) = (even as f64, odd as f64);
-                for c in 0..3 {
-                    let (a, b) = (half[c] / n_even, (total[c] - half[c]) / n_odd);
-                    sum += total[c] / (n_even + n_odd);
-                    // Var(a − b) = σ²(1/nₑ + 1/nₒ), and the mean's variance is σ²/(nₑ + nₒ).
-                    squares += (a - b).powi(2) * n_even * n_odd / (n_even + n_odd).powi(2);
-                    n += 1;
-                }
+        // Summed in the order of the tiles: the same bits for any number of threads.
+        let tiles = self.data.par_iter().enumerate();
+        let sums: Vec<HalfSums> = tiles.map(|(t, tile)| self.tile_halves(t, tile)).collect();
+        let mut all = HalfSums::default();
+        sums.iter().for_each(|sums| all.add(sums));
+        all.estimate()
+    }
+
+    /// The newest mark that leaves at least half as many passes after it, and its passes.
+    fn usable_mark(&self) -> Option<(usize, u64)> {
+        let marks = self.marked.into_iter().enumerate();
+        let mut marks = marks.filter(|(_, m)| *m >= 2);
+        marks.find(|(_, m)| self.passes >= m + (m / 2).max(2))
+    }
+
+    fn tile_halves(&self, index: usize, tile: &FilmTile) -> HalfSums {
+        let mut pixels: TileHalves = [None; TILE_PIXELS];
+        let even_plane = 1 + self.planned.count_ones() as usize;
+        let mark = self.usable_mark();
+        for (place, _) in self.tiles.pixels(index) {
+            let [even, odd] = tile.counts(place, self.passes);
+            if even == 0 || odd == 0 {
+                continue;
             }
+            let (total, half) = (tile.planes[0][place], tile.planes[even_plane][place]);
+            let (n_even, n_odd) = (even as f64, odd as f64);
+            let n = n_even + n_odd;
+            let difference = [0, 1, 2].map(|c| half[c] / n_even - (total[c] - half[c]) / n_odd);
+            // Var(a − b) = σ²(1/nₑ + 1/nₒ), and the mean's variance is σ²/(nₑ + nₒ).
+            let scale = self.scale * (n_even * n_odd).sqrt() / n;
+            // What came before the mark and what came after it, as sums.
+            let parts = mark.and_then(|(which, _)| {
+                let mark = tile.marks[which].as_ref()?[place].map(f64::from);
+                let after = [0, 1, 2].map(|c| difference[c] * 0.5 * n - mark[c]);
+                Some([mark, after])
+            });
+            pixels[place] = Some(PixelHalves {
+                d: difference.map(|d| d * scale),
+                mean: total.map(|t| self.scale * t / n),
+                parts,
+            });
         }
-        let mean = sum / n as f64;
-        (mean > 0.0).then(|| (squares / n as f64).sqrt() / mean)
+        HalfSums::of(&pixels)
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use super::halves::ErrorEstimate;
 use crate::engine::integrators::{Fact, PhotonView, RenderStats};
 use crate::engine::plan::RenderPlan;
 
@@ -14,6 +15,15 @@ pub struct FrameLayer {
     pub label: String,
     /// `width * height` pixels; NaN where every sample was rejected.
     pub pixels: Vec<[f32; 3]>,
+}
+
+/// Memory of a render by purpose, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Memory {
+    /// Sums of all layers.
+    pub film: usize,
+    /// What the integrator holds from pass to pass: the pass under way, maps, caches.
+    pub integrator: usize,
 }
 
 /// What a render looked like after its last published pass.
@@ -34,10 +44,20 @@ pub struct Frame {
     /// The whole, the four components in the order of [`crate::engine::path::COMPONENTS`], then
     /// typed expressions.
     pub layers: Vec<FrameLayer>,
+    /// Estimated error of the whole, pixel by pixel and with its sign: halved differences of two
+    /// independent halves. One of them says little; the root of the mean of the squares of many
+    /// is their standard error. Empty where there are no two halves.
+    pub differences: Vec<[f32; 3]>,
+    /// Where memory went.
+    pub memory: Memory,
+    /// Threads that render.
+    pub threads: usize,
     /// Counts since the job began.
     pub stats: RenderStats,
     /// Estimated RMSE / image mean, where two independent halves exist.
     pub relative_error: Option<f64>,
+    /// The same with its interval, in units of radiance.
+    pub error_estimate: Option<ErrorEstimate>,
     /// What is computed and what was left out.
     pub plan: Arc<RenderPlan>,
     /// A path-traced picture that stands in while the integrator cannot deliver one.
@@ -63,8 +83,12 @@ impl Frame {
             t_wall: 0.0,
             t_cpu: 0.0,
             layers: Vec::new(),
+            differences: Vec::new(),
+            memory: Memory::default(),
+            threads: 0,
             stats: RenderStats::default(),
             relative_error: None,
+            error_estimate: None,
             plan,
             preview: false,
             facts: Vec::new(),
@@ -80,6 +104,24 @@ impl Frame {
             error: Some(error),
             ..Self::empty(Arc::new(RenderPlan::nothing()))
         }
+    }
+
+    /// The standard error of the whole at `pixel`, from the differences of the pixels within
+    /// `reach` of it; `None` where they are not known.
+    pub fn standard_error(&self, pixel: UVec2, reach: u32) -> Option<[f32; 3]> {
+        let from = pixel.saturating_sub(UVec2::splat(reach));
+        let to = (pixel + reach + 1).min(self.size);
+        let (mut squares, mut count) = ([0.0f64; 3], 0u32);
+        for y in from.y..to.y {
+            for x in from.x..to.x {
+                let difference = self.differences.get((y * self.size.x + x) as usize)?;
+                for (sum, d) in squares.iter_mut().zip(difference) {
+                    *sum += f64::from(d * d);
+                }
+                count += 1;
+            }
+        }
+        (count > 0).then(|| squares.map(|s| (s / f64::from(count)).sqrt() as f32))
     }
 
     /// True while a lower resolution stands in for the picture.

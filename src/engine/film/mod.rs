@@ -6,6 +6,7 @@
 
 pub mod accumulator;
 pub mod frame;
+pub mod halves;
 pub mod pass_buffer;
 pub mod sample;
 pub mod splats;
@@ -13,7 +14,8 @@ pub mod tiles;
 pub mod tonemap;
 
 pub use accumulator::Film;
-pub use frame::{Frame, FrameLayer};
+pub use frame::{Frame, FrameLayer, Memory};
+pub use halves::ErrorEstimate;
 pub use pass_buffer::PassBuffer;
 pub use sample::SampleRadiance;
 pub use splats::{SplatBuffer, SplatList};

@@ -53,6 +53,13 @@ impl PassBuffer {
         self
     }
 
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        let plane = size_of::<[[f32; 3]; TILE_PIXELS]>();
+        let planes: usize = self.data.iter().map(|tile| tile.planes.capacity()).sum();
+        planes * plane + self.data.capacity() * size_of::<PassTile>()
+    }
+
     /// How the picture is cut.
     pub fn tiles(&self) -> Tiles {
         self.tiles

@@ -78,6 +78,14 @@ pub struct SplatBuffer {
 }
 
 impl SplatBuffer {
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        self.sums
+            .iter()
+            .map(|tile| size_of_val(tile.as_slice()))
+            .sum()
+    }
+
     /// Room for a pass over `size` pixels with the layers of the bit mask `planned`.
     pub fn new(size: UVec2, planned: u32) -> Self {
         let tiles = Tiles::new(size);

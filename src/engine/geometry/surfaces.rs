@@ -27,6 +27,8 @@ pub struct Geometry {
     tree: Tree,
     sphere_materials: Vec<u32>,
     sphere_prims: Vec<Option<u32>>,
+    /// By triangle; empty where no two lie in one place.
+    hidden: Vec<bool>,
     /// By primitive; empty while no surface emits.
     lights: Vec<Option<u32>>,
     bounds: Bounds3,
@@ -54,7 +56,8 @@ impl Geometry {
                 report.invalid_sphere += 1;
             }
         }
-        let tree = accel::build(&mesh, kept, &repeated(&mesh));
+        let hidden = repeated(&mesh);
+        let tree = accel::build(&mesh, kept, &hidden);
         let bounds = tree
             .spheres
             .iter()
@@ -64,6 +67,7 @@ impl Geometry {
             tree,
             sphere_materials,
             sphere_prims,
+            hidden,
             lights: Vec::new(),
             bounds,
         };
@@ -154,6 +158,11 @@ impl Geometry {
         self.tree.spheres.len()
     }
 
+    /// Bytes of the tree that rays walk, of all that are held.
+    pub fn tree_bytes(&self) -> usize {
+        self.tree.memory_bytes()
+    }
+
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
         self.mesh.memory_bytes()
@@ -199,6 +208,11 @@ impl Geometry {
         self.mesh.source(prim)
     }
 
+    /// Whether a triangle lies exactly on another of a lower number, so that no ray meets it.
+    pub fn is_hidden(&self, prim: u32) -> bool {
+        self.hidden.get(prim as usize).copied().unwrap_or(false)
+    }
+
     /// The primitive of an input sphere; `None` where it was dropped.
     pub fn sphere_prim(&self, sphere: usize) -> Option<u32> {
         self.sphere_prims.get(sphere).copied().flatten()
@@ -216,12 +230,18 @@ fn is_valid(sphere: &SphereInput) -> bool {
     sphere.center.is_finite() && sphere.radius > 0.0 && reach <= MAX_COORDINATE
 }
 
-/// Marks triangles whose corners equal, in order, those of a lower primitive. They can never be
-/// the closest hit, and a hundred thousand of them in one place would cost a test each.
+/// Marks triangles whose corners are, in whatever order, those of a lower primitive. They are not
+/// in the tree: rounding would decide which of the two is hit, and a hundred thousand of them in one
+/// place would cost a test each.
 fn repeated(mesh: &TriangleMesh) -> Vec<bool> {
     let bits = |prim: u32| {
-        mesh.vertices(prim)
-            .map(|corners| corners.map(|p| p.to_array().map(|x| (x + 0.0).to_bits())))
+        let mut corners = mesh
+            .vertices(prim)
+            .map(|corners| corners.map(|p| p.to_array().map(|x| (x + 0.0).to_bits())));
+        if let Some(corners) = &mut corners {
+            corners.sort_unstable();
+        }
+        corners
     };
     let hash = |prim: u32| {
         let words = bits(prim).unwrap_or_default();

@@ -48,6 +48,15 @@ const PARAMS: &[ParamSpec] = &[
               lens: all, all-0,2-*,1 (all but these), or 1,2+0,2 (these alone).",
     },
     ParamSpec {
+        name: "picture",
+        kind: ParamKind::Strategies,
+        default: "all",
+        unit: "",
+        doc: "Which strategies (s, t) the picture shows; the others keep their share of each path. \
+              1,2 shows what the weights leave of that strategy; with strategies=1,2 it stands \
+              alone and unweighted.",
+    },
+    ParamSpec {
         name: "heuristic",
         kind: ParamKind::Choice(&["power", "balance"]),
         default: "power",
@@ -80,7 +89,8 @@ pub(super) fn missing(features: &SceneFeatures, _params: &Params) -> Option<Miss
         words: "LS+((D|G|V)S+)*E".into(),
         why: "light of a point, spot or directional source that meets mirror or glass before and \
               after every diffuse or glossy surface passes no two neighbouring surfaces that a \
-              connection can join",
+              connection can join"
+            .into(),
     })
 }
 
@@ -225,6 +235,8 @@ pub(super) fn lens_dimension(plan: &RenderPlan, s: usize) -> u32 {
 /// The integrator.
 pub(super) struct Bdpt {
     estimator: Bidirectional,
+    /// Strategies whose light is shown.
+    picture: Strategies,
     sampler: SamplerKind,
     /// Photons to merge with.
     grid: Option<PhotonGrid>,
@@ -234,19 +246,22 @@ pub(super) struct Bdpt {
 
 /// Weighs and stores.
 struct Weighted<'a, 'b> {
+    picture: &'a Strategies,
     out: &'a mut SampleRadiance<'b>,
     splats: &'a mut SplatList,
 }
 
 impl Sink for Weighted<'_, '_> {
     #[inline]
-    fn add(&mut self, _: Technique, class: ClassId, value: Rgb, weight: f32) {
-        self.out.add(class, value * weight);
+    fn add(&mut self, technique: Technique, class: ClassId, value: Rgb, weight: f32) {
+        if self.picture.is_on(technique.s, technique.t) {
+            self.out.add(class, value * weight);
+        }
     }
 
     #[inline]
-    fn splat(&mut self, film: Vec2, _: Technique, class: ClassId, value: Rgb, weight: f32) {
-        if weight != 0.0 {
+    fn splat(&mut self, film: Vec2, of: Technique, class: ClassId, value: Rgb, weight: f32) {
+        if weight != 0.0 && self.picture.is_on(of.s, of.t) {
             self.splats.add(film, class, value * weight);
         }
     }
@@ -256,6 +271,7 @@ impl Bdpt {
     pub(super) fn new(params: &Params) -> Self {
         Self {
             estimator: Bidirectional::new(params),
+            picture: params.strategies("picture"),
             sampler: SamplerKind::of(params),
             grid: None,
             samples: None,
@@ -346,6 +362,7 @@ impl Bdpt {
             for (place, pixel) in layout.pixels(first + i) {
                 out.clear();
                 let mut sink = Weighted {
+                    picture: &self.picture,
                     out: &mut out,
                     splats: &mut splats,
                 };
@@ -390,5 +407,10 @@ impl Integrator for Bdpt {
         self.samples = Some(samples);
         self.splats = Some(splats);
         Ok(stats)
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.samples.as_ref().map_or(0, PassBuffer::bytes)
+            + self.splats.as_ref().map_or(0, SplatBuffer::bytes)
     }
 }

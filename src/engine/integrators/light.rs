@@ -61,7 +61,7 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     if features.shining_media {
         return Some(Missing {
             words: "L.*E".into(),
-            why: "light that a medium emits is met by walks from the eye alone",
+            why: "light that a medium emits is met by walks from the eye alone".into(),
         });
     }
     let mirror = "a light path cannot be joined to the lens at a mirror or at smooth glass";
@@ -78,7 +78,7 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     };
     Some(Missing {
         words: words.into(),
-        why,
+        why: why.into(),
     })
 }
 
@@ -173,6 +173,10 @@ impl LightTracer {
 }
 
 impl Integrator for LightTracer {
+    fn memory_bytes(&self) -> usize {
+        self.splats.as_ref().map_or(0, SplatBuffer::bytes)
+    }
+
     fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
         let (size, planned) = (film.size(), cx.plan.planned);
         let mut splats = match self.splats.take() {

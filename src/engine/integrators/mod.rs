@@ -5,6 +5,7 @@
 
 pub mod bdpt;
 pub mod bidirectional;
+pub mod give_way;
 pub mod light;
 pub mod monte_carlo;
 pub mod params;
@@ -19,6 +20,7 @@ pub mod tiled;
 pub mod vcm;
 pub mod whitted;
 
+pub use give_way::{GiveWay, Hold};
 pub use params::{ParamKind, ParamSpec, ParamValue, Params};
 pub use pass::{Cancel, Cancelled, Pass};
 pub use photon::PhotonView;
@@ -52,6 +54,11 @@ pub trait Integrator: Send + Sync {
     /// What it prepared, for the user to read.
     fn facts(&self) -> Vec<Fact> {
         Vec::new()
+    }
+
+    /// Memory it holds from pass to pass, in bytes, as far as it grows with picture or scene.
+    fn memory_bytes(&self) -> usize {
+        0
     }
 
     /// Its photons, for display.
@@ -109,7 +116,7 @@ pub struct Missing {
     /// An expression that the lost words match.
     pub words: Cow<'static, str>,
     /// Why, in one sentence.
-    pub why: &'static str,
+    pub why: Cow<'static, str>,
 }
 
 /// Every integrator, in the order of the window's list.

@@ -77,11 +77,12 @@ fn missing(features: &SceneFeatures, params: &Params) -> Option<Missing> {
         Some(lost) => Missing {
             words: format!("{longer}|{}", lost.words).into(),
             why: "rays are sent on to a chosen depth only, and no light of zero size is met by \
-                  chance",
+                  chance"
+                .into(),
         },
         None => Missing {
             words: longer.into(),
-            why,
+            why: why.into(),
         },
     })
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::give_way::GiveWay;
 use crate::engine::camera::Camera;
 use crate::engine::plan::RenderPlan;
 use crate::engine::scene::Scene;
@@ -17,12 +18,26 @@ pub struct Cancelled;
 pub struct Cancel {
     newest: Arc<AtomicU64>,
     epoch: u64,
+    give_way: Option<Arc<GiveWay>>,
 }
 
 impl Cancel {
     /// The token of the job `epoch`; it is cancelled by storing another number in `newest`.
     pub fn new(newest: Arc<AtomicU64>, epoch: u64) -> Self {
-        Self { newest, epoch }
+        Self {
+            newest,
+            epoch,
+            give_way: None,
+        }
+    }
+
+    /// The same token, whose owner also stands still while `give_way` is held.
+    #[must_use]
+    pub fn giving_way(self, give_way: Arc<GiveWay>) -> Self {
+        Self {
+            give_way: Some(give_way),
+            ..self
+        }
     }
 
     /// A token that nobody cancels.
@@ -30,12 +45,15 @@ impl Cancel {
         Self::new(Arc::new(AtomicU64::new(0)), 0)
     }
 
-    /// Fails once the job is no longer wanted.
+    /// Fails once the job is no longer wanted. Until then it may wait for what goes first.
     ///
     /// # Errors
     /// [`Cancelled`] then.
     #[inline]
     pub fn check(&self) -> Result<(), Cancelled> {
+        if let Some(give_way) = &self.give_way {
+            give_way.wait();
+        }
         if self.newest.load(Ordering::Relaxed) == self.epoch {
             Ok(())
         } else {

@@ -127,6 +127,27 @@ pub fn pyramid(
     Ok(sums.into_iter().map(image).collect())
 }
 
+/// All pictures on one sheet, a row for each length of paths, s growing to the right: weighted ones
+/// on the left, unweighted ones on the right.
+pub fn sheet(images: &[TechniqueImage], size: UVec2) -> (UVec2, Vec<[f32; 3]>) {
+    let vertices = |i: &TechniqueImage| i.technique.s + i.technique.t;
+    let most = images.iter().map(vertices).max().unwrap_or(2) as u32;
+    let columns = most;
+    let whole = UVec2::new(2 * columns, most - 1) * size;
+    let mut pixels = vec![[0.0; 3]; whole.x as usize * whole.y as usize];
+    for image in images {
+        let row = vertices(image) as u32 - 2;
+        for (half, source) in [(0, &image.weighted), (1, &image.unweighted)] {
+            let left = (half * columns + image.technique.s as u32) * size.x;
+            for (y, line) in (0..size.y).zip(source.chunks_exact(size.x as usize)) {
+                let at = ((row * size.y + y) * whole.x + left) as usize;
+                pixels[at..at + line.len()].copy_from_slice(line);
+            }
+        }
+    }
+    (whole, pixels)
+}
+
 /// One sample of every pixel of the rows `rows`.
 fn fill(bdpt: &Bdpt, cx: &Pass<'_>, rows: std::ops::Range<u32>, most: usize) -> List {
     let mut list = List {
@@ -203,6 +224,36 @@ mod tests {
                 assert!((sum - whole).abs() < 1e-4 * whole, "{sum} {whole}");
             }
         }
+
+        // The integrator shows each of them alone.
+        for image in &images {
+            let mut params = params.clone();
+            let words = format!("{},{}", image.technique.s, image.technique.t);
+            params.set(bdpt::ENTRY.params, "picture", &words).unwrap();
+            let mut integrator = (bdpt::ENTRY.build)(&params);
+            let mut film = Film::new(camera.size(), plan.planned);
+            for index in 0..passes {
+                pass.index = index;
+                Integrator::render_pass(integrator.as_mut(), &pass, &mut film).unwrap();
+            }
+            film.resolve(&plan.labels, &mut layers);
+            for (a, b) in layers[0].pixels.iter().zip(&image.weighted) {
+                for c in 0..3 {
+                    let near = (a[c] - b[c]).abs() <= 1e-4 * b[c];
+                    assert!(near, "{words}: {} {}", a[c], b[c]);
+                }
+            }
+        }
+
+        // On the sheet each has its place: s = 1 of three vertices, unweighted.
+        let (whole, pixels) = sheet(&images, camera.size());
+        assert_eq!(whole, camera.size() * UVec2::new(8, 3));
+        let at = UVec2::new(5, 1) * camera.size() + UVec2::new(3, 2);
+        let of = images
+            .iter()
+            .find(|i| i.technique == Technique { s: 1, t: 2 });
+        let there = of.unwrap().unweighted[2 * camera.size().x as usize + 3];
+        assert_eq!(pixels[(at.y * whole.x + at.x) as usize], there);
 
         // Each strategy alone finds all paths of its length in this scene.
         let mean = |pixels: &[[f32; 3]]| -> f32 {

@@ -66,7 +66,8 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     (features.zero_size_lights && features.specular).then(|| Missing {
         words: "LS(S|G|V)*E".into(),
         why: "light of a point, spot or directional source that first meets a mirror or glass is \
-              found by photons alone, and they are gathered at diffuse surfaces",
+              found by photons alone, and they are gathered at diffuse surfaces"
+            .into(),
     })
 }
 
@@ -81,6 +82,11 @@ impl Integrator for Sppm {
         self.tiled.estimator_mut().grid = Some(grid);
         stats += self.tiled.render_pass(cx, film)?;
         Ok(stats)
+    }
+
+    fn memory_bytes(&self) -> usize {
+        let grid = self.tiled.estimator().grid.as_ref();
+        self.tiled.buffer_bytes() + grid.map_or(0, PhotonGrid::bytes)
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -154,7 +160,7 @@ impl RayIntegrator for Estimator {
             }
             let suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
             walk = walk.after(&si, &sample, suffix, 1.0);
-            if cx.plan.is_pointless(suffix) || !walk.survives(self.roulette, roulette) {
+            if cx.plan.is_pointless(suffix) || !walk.survives(self.roulette, roulette, stats) {
                 return;
             }
             ray = si.spawn_ray(sample.wi);

@@ -13,8 +13,7 @@ pub struct BadSample {
     pub pass: u64,
 }
 
-/// Levels that are counted apart.
-pub const LEVELS: usize = 16;
+pub use crate::engine::photon::LEVELS;
 
 /// What one or more passes did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,6 +36,10 @@ pub struct RenderStats {
     /// Rays of walks from the eye by the number of events before them; the last counts all longer
     /// ones, too.
     levels: [u64; LEVELS],
+    /// The same of walks from the lights.
+    light_levels: [u64; LEVELS],
+    /// How often Russian roulette was played, and survived.
+    roulette: [u64; 2],
     /// Trees of rays that were cut at their largest number.
     pub cut_trees: u64,
     /// Times that no independent sample found light for Markov chains to start from.
@@ -59,6 +62,60 @@ impl RenderStats {
     pub fn levels(&self) -> &[u64] {
         let used = self.levels.iter().rposition(|n| *n > 0);
         &self.levels[..used.map_or(0, |last| last + 1)]
+    }
+
+    /// Counts a ray of a walk from a light after `events` events.
+    #[inline]
+    pub fn light_ray_at(&mut self, events: u32) {
+        self.rays += 1;
+        self.light_levels[(events as usize).min(LEVELS - 1)] += 1;
+    }
+
+    /// Counts rays of walks from the lights that were counted elsewhere, by level.
+    pub fn add_light_rays(&mut self, levels: &[u64; LEVELS]) {
+        self.rays += levels.iter().sum::<u64>();
+        for (sum, n) in self.light_levels.iter_mut().zip(levels) {
+            *sum += n;
+        }
+    }
+
+    /// Rays of walks from the lights by the number of events before them.
+    pub fn light_levels(&self) -> &[u64] {
+        let used = self.light_levels.iter().rposition(|n| *n > 0);
+        &self.light_levels[..used.map_or(0, |last| last + 1)]
+    }
+
+    /// Counts a game of Russian roulette and hands its outcome on.
+    #[inline]
+    pub fn play(&mut self, survived: bool) -> bool {
+        self.add_games(1, u64::from(survived));
+        survived
+    }
+
+    /// Counts games that were played elsewhere.
+    #[inline]
+    pub fn add_games(&mut self, played: u64, survived: u64) {
+        self.roulette[0] += played;
+        self.roulette[1] += survived;
+    }
+
+    /// Share of the games of roulette that walks survived; None if none was played.
+    pub fn survival(&self) -> Option<f64> {
+        let [played, survived] = self.roulette;
+        (played > 0).then(|| survived as f64 / played as f64)
+    }
+
+    /// Histogram of lengths: walks from the eye and from the lights that ended after 0, 1, 2 …
+    /// events, the last standing for all longer ones. None for trees of rays, whose levels grow.
+    pub fn lengths(&self) -> [Option<Vec<u64>>; 2] {
+        [self.levels(), self.light_levels()].map(|levels| {
+            let after = levels.iter().skip(1).chain(&[0]);
+            levels
+                .iter()
+                .zip(after)
+                .map(|(n, m)| n.checked_sub(*m))
+                .collect()
+        })
     }
 
     /// Share of the mutations of Markov chains that were accepted; None without any.
@@ -85,9 +142,35 @@ impl AddAssign for RenderStats {
         for (sum, n) in self.levels.iter_mut().zip(o.levels) {
             *sum += n;
         }
+        for (sum, n) in self.light_levels.iter_mut().zip(o.light_levels) {
+            *sum += n;
+        }
+        self.add_games(o.roulette[0], o.roulette[1]);
         self.cut_trees += o.cut_trees;
         self.dark_starts += o.dark_starts;
         self.mutations += o.mutations;
         self.accepted += o.accepted;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_what_levels_lose() {
+        let mut stats = RenderStats::default();
+        for length in [0, 0, 1, 3] {
+            (0..=length).for_each(|events| stats.ray_at(events));
+        }
+        stats.light_ray_at(0);
+        assert_eq!(stats.lengths(), [Some(vec![2, 1, 0, 1]), Some(vec![1])]);
+        assert_eq!(stats.rays, 9);
+        // A tree has more rays after an event than before.
+        stats.ray_at(5);
+        assert_eq!(stats.lengths()[0], None);
+        assert_eq!(stats.survival(), None);
+        assert!(stats.play(true) && !stats.play(false));
+        assert_eq!(stats.survival(), Some(0.5));
     }
 }

@@ -71,6 +71,11 @@ impl<T: RayIntegrator> Tiled<T> {
         &mut self.estimator
     }
 
+    /// Memory of the pass under way.
+    pub fn buffer_bytes(&self) -> usize {
+        self.buffer.as_ref().map_or(0, PassBuffer::bytes)
+    }
+
     /// Computes the sample of one pixel in one pass again, alone.
     pub fn sample(
         &self,
@@ -158,5 +163,9 @@ impl<T: RayIntegrator> Integrator for Tiled<T> {
                 sum += s;
                 sum
             }))
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.buffer_bytes()
     }
 }

@@ -93,7 +93,8 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     (features.zero_size_lights && features.specular).then(|| Missing {
         words: "LS+((G|V)S+)*E".into(),
         why: "light of a point, spot or directional source that meets mirror or glass before and \
-              after every glossy surface, and no diffuse one, can be neither connected nor merged",
+              after every glossy surface, and no diffuse one, can be neither connected nor merged"
+            .into(),
     })
 }
 
@@ -186,6 +187,10 @@ impl Integrator for Vcm {
         self.bdpt.merge_with(grid);
         stats += self.bdpt.render_pass(cx, film)?;
         Ok(stats)
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.bdpt.memory_bytes() + self.bdpt.photons().map_or(0, PhotonGrid::bytes)
     }
 
     fn facts(&self) -> Vec<Fact> {

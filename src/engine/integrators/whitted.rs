@@ -87,7 +87,7 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
     };
     Some(Missing {
         words: words.into(),
-        why,
+        why: why.into(),
     })
 }
 
@@ -248,7 +248,7 @@ impl Whitted {
             };
             if !all {
                 let survival = next.kept.max_component().min(MAX_SURVIVAL);
-                if u.y >= survival {
+                if !stats.play(u.y < survival) {
                     continue;
                 }
                 next.throughput *= 1.0 / survival;

@@ -17,15 +17,6 @@ pub struct Colors<'a> {
     images: HashMap<(String, Encoding), Arc<ImageData>>,
 }
 
-/// What a colour may be.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Limit {
-    /// Albedo, opacity: in [0, 1].
-    Share,
-    /// Radiance: at least 0.
-    Radiance,
-}
-
 impl<'a> Colors<'a> {
     /// Of files in `files`.
     pub fn new(files: &'a dyn FileSource) -> Self {
@@ -54,16 +45,16 @@ impl<'a> Colors<'a> {
         Ok(image)
     }
 
-    /// A colour: three numbers, one number, a texture or a checkerboard.
+    /// A share of light, each channel in [0, 1]: three numbers, one number, a texture or a
+    /// checkerboard.
     pub fn color(
         &mut self,
         f: &Fields<'_>,
         node: &Node,
         name: &str,
-        limit: Limit,
     ) -> Result<ColorDesc, InputError> {
         if !matches!(node.value, Value::Table(_)) {
-            return constant(f, node, name, limit).map(ColorDesc::Constant);
+            return constant(f, node, name).map(ColorDesc::Constant);
         }
         let mut table = Fields::new(f.file(), node, format!("{}, {name}", f.what))?;
         let color = if let Some((file, line)) = table.text("texture")? {
@@ -89,8 +80,8 @@ impl<'a> Colors<'a> {
                 return Err(table.error_at(node.line, "checker is to be a list of two colours"));
             };
             let colors = [
-                constant(&table, a, "checker", limit)?,
-                constant(&table, b, "checker", limit)?,
+                constant(&table, a, "checker")?,
+                constant(&table, b, "checker")?,
             ];
             let scale = table.number_or("scale", 1.0, "a number above 0", |x| x > 0.0)?;
             ColorDesc::Checker { colors, scale }
@@ -109,13 +100,13 @@ impl<'a> Colors<'a> {
         name: &'static str,
     ) -> Result<ColorDesc, InputError> {
         let node = f.required(name, "a colour, such as [0.5, 0.5, 0.5]")?;
-        self.color(f, node, name, Limit::Share)
+        self.color(f, node, name)
     }
 }
 
-fn constant(f: &Fields<'_>, node: &Node, name: &str, limit: Limit) -> Result<Rgb, InputError> {
+fn constant(f: &Fields<'_>, node: &Node, name: &str) -> Result<Rgb, InputError> {
     let color = f.amounts(node, name)?;
-    if limit == Limit::Share && color.max_component() > 1.0 {
+    if color.max_component() > 1.0 {
         let message = format!(
             "{name} is at most 1, not {}; more would make light out of nothing",
             color.max_component()
@@ -179,7 +170,7 @@ fn read_one(
         "dielectric" => MaterialDesc::Dielectric {
             ior: f.number("ior", IOR, index)?,
             transmittance: match f.take("transmittance") {
-                Some(node) => constant(&f, node, "transmittance", Limit::Share)?,
+                Some(node) => constant(&f, node, "transmittance")?,
                 None => Rgb::WHITE,
             },
         },
@@ -202,7 +193,7 @@ fn read_one(
     };
     let opacity = f
         .take("opacity")
-        .map(|n| colors.color(&f, n, "opacity", Limit::Share))
+        .map(|n| colors.color(&f, n, "opacity"))
         .transpose()?;
     f.finish()?;
     Ok(NamedMaterial {

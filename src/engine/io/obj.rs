@@ -1,15 +1,16 @@
-//! OBJ meshes, read by tobj. The only file that names it.
+//! OBJ meshes, read by tobj, which only this file and `mtl_files` name.
 //!
 //! tobj keeps no line numbers: after an error our own scan finds the line. Polygons are split by
 //! our own triangulation, which gets concave ones right.
 
 use std::cell::RefCell;
+use std::collections::HashSet;
 use std::path::Path;
 
 use glam::{Vec3, Vec3A};
 use tobj::{LoadError, LoadOptions};
 
-use super::error::InputError;
+use super::error::{InputError, did_you_mean};
 use super::materials::Colors;
 use super::mtl;
 use super::mtl_files::MtlFiles;
@@ -62,18 +63,19 @@ pub fn read(
         ..ObjFile::default()
     };
     let materials = materials.unwrap_or_default();
-    let (indices, emissions) = add_materials(&materials, &mtl_files, colors, &mut file)?;
+    let mapped = add_materials(&materials, &mtl_files, colors, &mut file);
+    warn_of_unknown_names(path, &bytes, &materials, &mut file.warnings);
     for model in models {
-        let id = model.mesh.material_id.filter(|id| *id < indices.len());
-        let mut mesh = convert(model.name, &model.mesh);
+        let known = model.mesh.material_id.and_then(|id| mapped.get(id));
+        let mut mesh = convert(path, model.name, &model.mesh, &mut file.warnings);
         if mesh.triangles.is_empty() {
             continue;
         }
-        mesh.material = match id {
-            Some(id) => indices[id],
+        mesh.material = match known {
+            Some((index, _)) => *index,
             None => default_material(&mut file),
         };
-        mesh.emission = id.and_then(|id| emissions[id].clone());
+        mesh.emission = known.and_then(|(_, emission)| *emission);
         file.meshes.push(mesh);
     }
     if file.meshes.is_empty() {
@@ -83,23 +85,21 @@ pub fn read(
     Ok(file)
 }
 
-type Emission = Option<crate::engine::scene::desc::ColorDesc>;
-
 /// Maps the materials; returns the index and the emission of each.
 fn add_materials(
     materials: &[tobj::Material],
     from: &MtlFiles,
     colors: &mut Colors<'_>,
     file: &mut ObjFile,
-) -> Result<(Vec<usize>, Vec<Emission>), InputError> {
-    let (mut indices, mut emissions) = (Vec::new(), Vec::new());
+) -> Vec<(usize, Option<Rgb>)> {
+    let mut mapped = Vec::new();
     for m in materials {
-        let mapped = mtl::map(&from.placed(m), file.materials.len(), colors)?;
-        indices.push(file.materials.len());
-        emissions.push(mapped.emission);
-        file.materials.extend(mapped.materials);
+        let index = file.materials.len();
+        let material = mtl::map(&from.placed(m), index, colors, &mut file.warnings);
+        mapped.push((index, material.emission));
+        file.materials.extend(material.materials);
     }
-    Ok((indices, emissions))
+    mapped
 }
 
 /// The grey of faces without a material; added when first needed.
@@ -112,21 +112,57 @@ fn default_material(file: &mut ObjFile) -> usize {
     file.materials.len() - 1
 }
 
-fn convert(name: String, mesh: &tobj::Mesh) -> MeshDesc {
+/// Faces of a material that no MTL file defines are grey; where no file could be read, that has
+/// been said.
+fn warn_of_unknown_names(
+    path: &str,
+    bytes: &[u8],
+    materials: &[tobj::Material],
+    warnings: &mut Vec<String>,
+) {
+    if materials.is_empty() {
+        return;
+    }
+    let mut told = HashSet::new();
+    for (number, line) in String::from_utf8_lossy(bytes).lines().enumerate() {
+        let Some(name) = line.trim().strip_prefix("usemtl ").map(str::trim) else {
+            continue;
+        };
+        let known = materials.iter().any(|m| m.name == name);
+        if !known && told.insert(name.to_owned()) {
+            let names = materials.iter().map(|m| m.name.as_str());
+            let hint = did_you_mean(name, names);
+            let line = number + 1;
+            warnings.push(format!(
+                "{path}:{line}: no material is called \"{name}\", so its faces are grey{hint}"
+            ));
+        }
+    }
+}
+
+fn convert(path: &str, name: String, mesh: &tobj::Mesh, warnings: &mut Vec<String>) -> MeshDesc {
     let triples = |v: &[f32]| v.chunks_exact(3).map(Vec3::from_slice).collect::<Vec<_>>();
     let positions = triples(&mesh.positions);
-    let full = |v: Vec<Vec3>| {
-        if v.len() == positions.len() {
-            v
-        } else {
-            Vec::new()
+    let mut all_or_none = |count: usize, what: &str| {
+        if count != 0 && count != positions.len() {
+            warnings.push(format!(
+                "{path}: mesh \"{name}\": some faces have no {what}, so those of the others are not used"
+            ));
         }
+        count == positions.len()
     };
-    let uvs: Vec<[f32; 2]> = mesh
+    let mut normals = triples(&mesh.normals);
+    if !all_or_none(normals.len(), "normals") {
+        normals.clear();
+    }
+    let mut uvs: Vec<[f32; 2]> = mesh
         .texcoords
         .chunks_exact(2)
         .map(|t| [t[0], t[1]])
         .collect();
+    if !all_or_none(uvs.len(), "texture coordinates") {
+        uvs.clear();
+    }
     let mut triangles = Vec::with_capacity(mesh.indices.len() / 3);
     if mesh.face_arities.is_empty() {
         triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]));
@@ -141,12 +177,8 @@ fn convert(name: String, mesh: &tobj::Mesh) -> MeshDesc {
     }
     MeshDesc {
         name,
-        normals: full(triples(&mesh.normals)),
-        uvs: if uvs.len() == positions.len() {
-            uvs
-        } else {
-            Vec::new()
-        },
+        normals,
+        uvs,
         positions,
         triangles,
         ..MeshDesc::default()

@@ -4,11 +4,12 @@ use glam::Affine3A;
 
 use super::error::InputError;
 use super::fields::Fields;
-use super::materials::{Colors, Limit, find};
+use super::materials::{Colors, find};
 use super::media::{self, Interior};
 use super::source::{FileSource, beside};
 use super::value::Node;
 use super::{obj, transform};
+use crate::engine::math::Rgb;
 use crate::engine::scene::desc::media::SurfaceDesc;
 use crate::engine::scene::desc::{MeshDesc, NamedMaterial, SceneDesc, SphereDesc};
 
@@ -28,7 +29,7 @@ pub fn read_mesh(
     let material = f.text("material")?;
     let emission = f
         .take("emission")
-        .map(|n| colors.color(&f, n, "emission", Limit::Radiance))
+        .map(|n| f.amounts(n, "emission"))
         .transpose()?;
     let transform = transform::read(&mut f)?;
     let interior = media::read_interior(&mut f, &scene.media.media)?;
@@ -58,7 +59,7 @@ pub fn read_mesh(
 fn add_meshes(
     parsed: obj::ObjFile,
     material: Option<usize>,
-    emission: Option<crate::engine::scene::desc::ColorDesc>,
+    emission: Option<Rgb>,
     transform: Option<Affine3A>,
     scene: &mut SceneDesc,
 ) {
@@ -71,9 +72,9 @@ fn add_meshes(
         scene.meshes.push(MeshDesc {
             material: material.unwrap_or(first + mesh.material),
             emission: if material.is_some() {
-                emission.clone()
+                emission
             } else {
-                emission.clone().or(mesh.emission)
+                emission.or(mesh.emission)
             },
             transform,
             ..mesh

@@ -1,13 +1,14 @@
 //! Differences between a picture and its reference.
 //!
 //! All means run over pixels and channels, in f64. Pixels with a channel that is not finite, in
-//! either picture, are left out and counted. Nothing is subtracted for the reference's own
+//! either picture, are left out and counted. A few pixels of many samples' brightness (fireflies)
+//! can make up most of a mean square: [`Metrics::without_worst`] says what is left without them. Nothing is subtracted for the reference's own
 //! noise; [`ReferenceNoise`] says how large that is.
 
 use serde::Serialize;
 
 /// Added to r² in the relative error, so that black pixels do not count without bound.
-const RELMSE_FLOOR: f64 = 0.01;
+pub const RELMSE_FLOOR: f64 = 0.01;
 
 /// Figures for picture x against reference r.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -53,6 +54,36 @@ impl Metrics {
             non_finite: image.len() as u64 - sums.pixels,
         })
     }
+}
+
+/// Share of the pixels that [`Metrics::without_worst`] leaves out.
+pub const WORST_SHARE: f64 = 0.001;
+
+impl Metrics {
+    /// The figures without the thousandth of the finite pixels whose squared error, summed over
+    /// channels, is largest (at least one pixel). The mean of the reference, by which nmse is
+    /// divided, leaves them out too.
+    pub fn without_worst(image: &[[f32; 3]], reference: &[[f32; 3]]) -> Option<Self> {
+        if image.len() != reference.len() {
+            return None;
+        }
+        let pairs = image.iter().zip(reference);
+        let mut pairs: Vec<(f64, [f32; 3], [f32; 3])> = pairs
+            .filter(|(x, r)| is_finite(x) && is_finite(r))
+            .map(|(x, r)| (squared_error(x, r), *x, *r))
+            .collect();
+        let non_finite = (image.len() - pairs.len()) as u64;
+        let worst = (pairs.len() as f64 * WORST_SHARE).ceil() as usize;
+        let kept = pairs.len().checked_sub(worst).filter(|n| *n > 0)?;
+        pairs.select_nth_unstable_by(kept, |a, b| a.0.total_cmp(&b.0));
+        let (x, r): (Vec<_>, Vec<_>) = pairs[..kept].iter().map(|(_, x, r)| (*x, *r)).unzip();
+        Self::new(&x, &r).map(|m| Self { non_finite, ..m })
+    }
+}
+
+fn squared_error(x: &[f32; 3], r: &[f32; 3]) -> f64 {
+    let square = |c: usize| (f64::from(x[c]) - f64::from(r[c])).powi(2);
+    square(0) + square(1) + square(2)
 }
 
 #[derive(Default)]
@@ -188,6 +219,21 @@ mod tests {
         assert_eq!(Metrics::new(&[[f32::NAN; 3]], &[[1.0; 3]]), None);
         assert_eq!(channel_means(&x), Some([2.0; 3]));
         assert_eq!(channel_means(&[[f32::NAN; 3]]), None);
+    }
+
+    #[test]
+    fn the_worst_thousandth_is_left_out() {
+        let mut x = vec![[1.0f32, 2.0, 3.0]; 2000];
+        let r = vec![[1.0f32, 2.0, 2.0]; 2000];
+        (x[7], x[1234]) = ([1e6; 3], [0.0, 2.0, 1000.0]);
+        let all = Metrics::new(&x, &r).unwrap();
+        let most = Metrics::without_worst(&x, &r).unwrap();
+        assert!(all.rmse > 1e4);
+        assert_near(most.rmse, (1.0f64 / 3.0).sqrt());
+        assert_near(most.bias, 1.0 / 3.0);
+        x[7][0] = f32::NAN;
+        assert_eq!(Metrics::without_worst(&x, &r).unwrap().non_finite, 1);
+        assert_eq!(Metrics::without_worst(&x[..1], &r[..1]), None);
     }
 
     #[test]

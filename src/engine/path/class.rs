@@ -222,6 +222,26 @@ impl PathClasses {
         self.from_light[usize::from(prefix.0)]
     }
 
+    /// A shortest word of each class that has one of at most `longest` events, in letters from
+    /// the light on: a name for people.
+    pub fn shortest_words(&self, longest: usize) -> Vec<(ClassId, String)> {
+        let mut named = vec![(ClassId::EMPTY, String::new())];
+        let mut first = 0;
+        for _ in 0..longest {
+            let last = named.len();
+            for i in first..last {
+                for letter in [Letter::D, Letter::S, Letter::G] {
+                    let class = self.append(named[i].0, letter);
+                    if named.iter().all(|(known, _)| *known != class) {
+                        named.push((class, format!("{}{letter:?}", named[i].1)));
+                    }
+                }
+            }
+            first = last;
+        }
+        named
+    }
+
     /// The layers that hold some word of these letters with at most `max_events` events.
     pub fn possible(&self, letters: &[Letter], max_events: Option<u32>) -> u32 {
         let mut known = vec![false; self.len];

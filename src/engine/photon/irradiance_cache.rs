@@ -75,6 +75,11 @@ impl IrradianceCache {
         &self.records
     }
 
+    /// Distance up to which a record serves points of its own normal.
+    pub fn reach(&self, record: &CacheRecord) -> f32 {
+        self.settings.error * record.radius
+    }
+
     /// Bytes of the records.
     pub fn memory_bytes(&self) -> usize {
         let values = |r: &CacheRecord| r.values.capacity() * size_of::<(ClassId, Rgb)>();

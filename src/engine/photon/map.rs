@@ -51,6 +51,9 @@ pub struct MapSettings {
     pub index: u64,
 }
 
+/// Levels of rays that are counted apart.
+pub const LEVELS: usize = 16;
+
 /// What the first pass did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MapCounts {
@@ -64,6 +67,11 @@ pub struct MapCounts {
     pub power: [f64; 3],
     /// Rays traced.
     pub rays: u64,
+    /// Those of the photons themselves by the number of events before them; the last counts all
+    /// longer ones, too. The rest belongs to the pilot.
+    pub levels: [u64; LEVELS],
+    /// How often photons played roulette, and survived.
+    pub roulette: [u64; 2],
     /// Paths cut at the largest number of events.
     pub cut: u64,
 }
@@ -75,6 +83,8 @@ impl MapCounts {
         self.direct += o.direct;
         (0..3).for_each(|c| self.power[c] += o.power[c]);
         self.rays += o.rays;
+        (0..LEVELS).for_each(|i| self.levels[i] += o.levels[i]);
+        (0..2).for_each(|i| self.roulette[i] += o.roulette[i]);
         self.cut += o.cut;
     }
 }
@@ -230,6 +240,11 @@ impl<T: Record> Witness for Chunk<T> {
         self.photons.push(T::pack(&photon, si.n_g, self.unit, u));
     }
 
+    fn played(&mut self, survived: bool) {
+        self.counts.roulette[0] += 1;
+        self.counts.roulette[1] += u64::from(survived);
+    }
+
     fn cut(&mut self) {
         self.counts.cut += 1;
     }
@@ -287,6 +302,10 @@ pub fn trace_photons<T: Record, E: Send>(
                     let number = (pilot, path);
                     let rays = follow(walks, settings, number, share, &mut chunk);
                     chunk.counts.rays += rays;
+                    // A photon has a ray before each of its events, and one after the last.
+                    for level in 0..rays {
+                        chunk.counts.levels[(level as usize).min(LEVELS - 1)] += 1;
+                    }
                     chunk.counts.emitted += 1;
                 }
                 Ok(chunk)

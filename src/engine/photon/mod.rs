@@ -28,7 +28,7 @@ pub mod volume;
 pub use estimate::{Contribution, Disc, Weighed};
 pub use kdtree::{KdTree, SplitPlane, SplitRule};
 pub use kernel::Kernel;
-pub use map::{MapCounts, MapSettings, Numbers, Packing, PhotonMap};
+pub use map::{LEVELS, MapCounts, MapSettings, Numbers, Packing, PhotonMap};
 pub use maps::{MapsSettings, PhotonMaps};
 pub use nearest::Nearest;
 pub use paths::PhotonPath;

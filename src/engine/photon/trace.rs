@@ -10,7 +10,7 @@ use crate::engine::path::{ClassId, PathClasses};
 use crate::engine::sampling::Sampler;
 use crate::engine::scene::Scene;
 
-/// Which photons a walk keeps. Together the maps hold every prefix once (CONTRACT rule 7).
+/// Which photons a walk keeps. Together the maps hold every prefix once (rule 7 of the code map).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapKind {
     /// Prefixes (S|G)+.
@@ -81,6 +81,8 @@ pub trait Witness {
     fn stored(&mut self, photon: Photon, si: &SurfaceInteraction, u: f32);
     /// It travelled along `ray` to `si`, or left the scene.
     fn travelled(&mut self, _ray: &Ray, _si: Option<&SurfaceInteraction>) {}
+    /// It played roulette.
+    fn played(&mut self, _survived: bool) {}
     /// It was cut at the largest number of events.
     fn cut(&mut self) {}
 }
@@ -137,8 +139,9 @@ impl Walks<'_> {
             }
             class = self.classes.append(class, sample.event.letter());
             events += 1;
-            let Some(scattered) = self.survive(power, sample.weight, events, first_power, roulette)
-            else {
+            let scattered = self.survive(power, sample.weight, events, first_power, roulette);
+            to.played(scattered.is_some());
+            let Some(scattered) = scattered else {
                 return rays;
             };
             power = scattered;

@@ -1,8 +1,10 @@
 //! From the authored scene to the one that is rendered.
 
+use std::collections::HashSet;
+
 use glam::{Affine3A, Vec3, Vec3A};
 
-use super::desc::{ColorDesc, MeshDesc, SceneDesc, SphereDesc};
+use super::desc::{MeshDesc, SceneDesc, SphereDesc};
 use super::features::SceneFeatures;
 use super::material::{Features, Material};
 use super::prepared::Scene;
@@ -22,16 +24,17 @@ impl Scene {
             .collect::<Result<_, _>>()?;
 
         let world: Vec<WorldMesh> = desc.meshes.iter().map(WorldMesh::new).collect();
-        let meshes: Vec<MeshInput<'_>> = desc
-            .meshes
+        // Of two triangles in one place the first is met: it is to be the one that shines.
+        let mut order: Vec<usize> = (0..desc.meshes.len()).collect();
+        order.sort_by_key(|i| desc.meshes[*i].emission.is_none());
+        let meshes: Vec<MeshInput<'_>> = order
             .iter()
-            .zip(&world)
-            .map(|(d, w)| w.input(d))
+            .map(|i| world[*i].input(&desc.meshes[*i]))
             .collect();
         let spheres: Vec<SphereInput> = desc.spheres.iter().map(sphere_input).collect();
         let (mut geometry, dropped) = Geometry::build(&meshes, &spheres);
 
-        let emitters = emitters(desc, &geometry)?;
+        let (emitters, covered) = emitters(desc, &order, &geometry);
         let lights = Lights::build(&desc.lights, &emitters, &geometry)?;
         geometry.set_lights(|prim| lights.of_primitive(prim));
         let inward = |sphere: usize| desc.spheres[sphere].inward;
@@ -40,6 +43,11 @@ impl Scene {
 
         let mut warnings = desc.warnings.clone();
         warnings.extend(describe_dropped(&dropped));
+        if covered > 0 {
+            warnings.push(format!(
+                "{covered} of the shapes that emit lie exactly on others and are left out"
+            ));
+        }
         let features = features(desc, &materials, &lights, &media);
         if !features.hittable_lights && !features.zero_size_lights && !features.shining_media {
             warnings.push("nothing in this scene emits light, so the picture is black".to_owned());
@@ -125,29 +133,34 @@ fn sphere_input(desc: &SphereDesc) -> SphereInput {
     }
 }
 
-/// Every primitive that emits, with what it emits.
-fn emitters(desc: &SceneDesc, geometry: &Geometry) -> Result<Vec<Emitter>, String> {
-    let mut emitters = Vec::new();
-    for (index, mesh) in desc.meshes.iter().enumerate() {
-        let Some(emission) = &mesh.emission else {
+/// Every primitive that emits, with what it emits, and how many are left out because no ray would
+/// meet them: shadow rays would find light that walks cannot. `order` is that of the meshes.
+fn emitters(desc: &SceneDesc, order: &[usize], geometry: &Geometry) -> (Vec<Emitter>, usize) {
+    let (mut emitters, mut covered) = (Vec::new(), 0);
+    for (index, mesh) in order.iter().map(|i| &desc.meshes[*i]).enumerate() {
+        let Some(radiance) = mesh.emission else {
             continue;
         };
-        let ColorDesc::Constant(radiance) = *emission else {
-            return Err(format!(
-                "mesh \"{}\": emission is one colour, not a texture",
-                mesh.name
-            ));
-        };
-        let prims = geometry.mesh_triangles(index);
-        emitters.extend(prims.map(|prim| Emitter { prim, radiance }));
+        let (hidden, met): (Vec<u32>, Vec<u32>) = geometry
+            .mesh_triangles(index)
+            .partition(|prim| geometry.is_hidden(*prim));
+        covered += hidden.len();
+        emitters.extend(met.into_iter().map(|prim| Emitter { prim, radiance }));
     }
+    let mut places = HashSet::new();
     for (index, sphere) in desc.spheres.iter().enumerate() {
+        let place = sphere.center.extend(sphere.radius).to_array();
+        let first = places.insert(place.map(|x| (x + 0.0).to_bits()));
         let (Some(radiance), Some(prim)) = (sphere.emission, geometry.sphere_prim(index)) else {
             continue;
         };
-        emitters.push(Emitter { prim, radiance });
+        if first {
+            emitters.push(Emitter { prim, radiance });
+        } else {
+            covered += 1;
+        }
     }
-    Ok(emitters)
+    (emitters, covered)
 }
 
 fn describe_dropped(dropped: &DropReport) -> Option<String> {

@@ -141,6 +141,11 @@ pub enum MaterialDesc {
         /// In [0, 1].
         weight: f32,
     },
+    /// Two materials at full weight, whose reflectances sum to at most 1 in every channel.
+    Sum {
+        /// Indices into [`SceneDesc::materials`].
+        materials: [usize; 2],
+    },
 }
 
 /// A colour, constant or over the surface's texture coordinates.
@@ -193,7 +198,7 @@ pub struct MeshDesc {
     /// Index into [`SceneDesc::materials`].
     pub material: usize,
     /// Radiance emitted from the front side.
-    pub emission: Option<ColorDesc>,
+    pub emission: Option<Rgb>,
     /// World from object.
     pub transform: Option<Affine3A>,
 }

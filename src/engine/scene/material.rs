@@ -201,7 +201,20 @@ fn build_color(desc: &ColorDesc) -> Result<Texture, String> {
     let known: &[Rgb] = match &texture {
         Texture::Constant(c) => std::slice::from_ref(c),
         Texture::Checker { colors, .. } => colors,
-        Texture::Image { .. } => &[],
+        Texture::Image { image, scale } => {
+            let values = image
+                .pixels
+                .iter()
+                .map(|p| (Rgb::from(*p) * *scale).max_component());
+            let most = values.fold(0.0, f32::max);
+            if most > 1.0 {
+                let name = &image.name;
+                return Err(format!(
+                    "{name} times its scale reaches {most}; at most 1 is right"
+                ));
+            }
+            &[]
+        }
     };
     for value in known.iter().flat_map(|c| c.to_array()) {
         if !(0.0..=1.0).contains(&value) {
@@ -280,6 +293,14 @@ impl Builder<'_> {
                     if share * w > 0.0 {
                         self.add(part, share * w)?;
                     }
+                }
+                self.parents.pop();
+                Ok(())
+            }
+            MaterialDesc::Sum { materials } => {
+                self.parents.push(index);
+                for part in materials {
+                    self.add(*part, share)?;
                 }
                 self.parents.pop();
                 Ok(())

@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use super::job::RenderJob;
 use super::{priority, worker};
 use crate::engine::film::Frame;
+use crate::engine::integrators::{GiveWay, Hold};
 
 /// What owner and worker share.
 pub(super) struct Shared {
@@ -14,6 +15,8 @@ pub(super) struct Shared {
     changed: Condvar,
     /// Epoch of the newest job; anything else is cancelled.
     pub newest: Arc<AtomicU64>,
+    /// Held while the owner must not wait.
+    pub give_way: Arc<GiveWay>,
     latest: Mutex<Option<Arc<Frame>>>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
@@ -97,6 +100,7 @@ impl RenderSession {
             mailbox: Mutex::default(),
             changed: Condvar::new(),
             newest: Arc::new(AtomicU64::new(0)),
+            give_way: Arc::default(),
             latest: Mutex::default(),
             wake: Box::new(wake),
         });
@@ -133,6 +137,12 @@ impl RenderSession {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
+    }
+
+    /// Makes all passes but the first one of a moving view stand still until the result is dropped:
+    /// for moments in which the owner needs all cores.
+    pub fn hold(&self) -> Hold {
+        self.shared.give_way.hold()
     }
 
     /// Stops after the pass under way, keeping all samples; or goes on.

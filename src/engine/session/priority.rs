@@ -5,10 +5,12 @@
 #[cfg(target_os = "linux")]
 const NICENESS: i32 = 10;
 
-/// Lowers the priority of the calling thread where the system has one for threads.
+/// Lowers the priority of the calling thread where the system has one for threads. A system that
+/// refuses leaves all threads equal.
 pub(super) fn lower() {
-    // On Linux niceness belongs to threads; elsewhere it is the whole process's. A system that
-    // refuses leaves all threads equal.
+    // On Linux niceness belongs to threads; on other Unixes it is the whole process's.
     #[cfg(target_os = "linux")]
     let _ = rustix::process::nice(NICENESS);
+    #[cfg(any(windows, target_os = "macos"))]
+    let _ = thread_priority::set_current_thread_priority(thread_priority::ThreadPriority::Min);
 }

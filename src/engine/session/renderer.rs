@@ -8,7 +8,7 @@ use glam::UVec2;
 use super::clock::RenderClock;
 use super::job::{RenderJob, Settings};
 use crate::engine::camera::Camera;
-use crate::engine::film::{Film, Frame};
+use crate::engine::film::{ErrorEstimate, Film, Frame, Memory};
 use crate::engine::integrators::{Cancel, Cancelled, Integrator, Params, Pass, RenderStats};
 use crate::engine::path::ExpressionError;
 use crate::engine::plan::RenderPlan;
@@ -152,7 +152,12 @@ impl Renderer {
 
     /// Estimated RMSE / image mean.
     pub fn relative_error(&self) -> Option<f64> {
-        self.film.relative_error()
+        self.film.error_estimate()?.relative()
+    }
+
+    /// Estimated error with its interval.
+    pub fn error_estimate(&self) -> Option<ErrorEstimate> {
+        self.film.error_estimate()
     }
 
     /// What is computed.
@@ -186,11 +191,21 @@ impl Renderer {
         frame.t_wall = self.clock.wall();
         frame.t_cpu = self.clock.cpu();
         frame.stats = self.stats;
-        frame.relative_error = if coarse.is_none() {
-            film.relative_error()
+        if coarse.is_none() {
+            film.resolve_differences(&mut frame.differences);
         } else {
-            None
+            frame.differences.clear();
+        }
+        frame.memory = Memory {
+            film: self.film.bytes(),
+            integrator: self.integrator.memory_bytes(),
         };
+        frame.threads = rayon::current_num_threads();
+        frame.error_estimate = match coarse {
+            None => film.error_estimate(),
+            Some(_) => None,
+        };
+        frame.relative_error = frame.error_estimate.and_then(|e| e.relative());
         frame.plan = Arc::clone(&self.plan);
         frame.preview = coarse.is_some() && self.previewed;
         frame.facts = self.integrator.facts();

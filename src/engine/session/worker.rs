@@ -120,7 +120,8 @@ impl Worker<'_> {
             Step::Coarse {
                 must_finish: true, ..
             } => Cancel::never(),
-            _ => Cancel::new(Arc::clone(&self.shared.newest), current.epoch),
+            _ => Cancel::new(Arc::clone(&self.shared.newest), current.epoch)
+                .giving_way(Arc::clone(&self.shared.give_way)),
         };
         let start = Instant::now();
         let renderer = &mut current.renderer;

@@ -53,6 +53,12 @@ impl Canvas {
         renewed
     }
 
+    /// Memory of the texture, at four bytes a pixel.
+    pub fn bytes(&self) -> u64 {
+        let [x, y] = self.area.size.to_array().map(|side| side as u64);
+        if self.texture.is_some() { x * y * 4 } else { 0 }
+    }
+
     /// What the picture is drawn to.
     pub fn view(&self) -> Option<&wgpu::TextureView> {
         self.texture.as_ref().map(|(view, _)| view)

@@ -29,16 +29,23 @@ impl Layers {
         }
     }
 
-    /// The buffers; absent ones are stood in for by the first.
-    pub fn buffers(&self) -> Option<[&Buffer; SLOTS]> {
+    /// Memory of the buffers.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.len() as u64 * self.capacity
+    }
+
+    /// The buffers of `layers`, the others stood in for by the first buffer.
+    pub fn buffers(&self, layers: &[usize]) -> Option<[&Buffer; SLOTS]> {
         let first = self.buffers.first()?;
+        let (_, held) = self.held.as_ref()?;
+        let of = |layer: &usize| self.buffers.get(held.iter().position(|h| h == layer)?);
         Some(std::array::from_fn(|i| {
-            self.buffers.get(i).unwrap_or(first)
+            layers.get(i).and_then(of).unwrap_or(first)
         }))
     }
 
-    /// Uploads `slots` of frame `number` unless they are there already. True if the buffers are
-    /// other ones than before.
+    /// Uploads `slots` of frame `number` unless they are there already. True if layers lie in
+    /// other buffers than before.
     pub fn upload(
         &mut self,
         device: &Device,
@@ -54,8 +61,9 @@ impl Layers {
         let size = u64::from(frame.size.x) * u64::from(frame.size.y) * 12;
         let full = u64::from(frame.full_size.x) * u64::from(frame.full_size.y) * 12;
         let renewed = self.reserve(device, full.max(size), slots.len());
+        let moved = renewed || self.held.as_ref().is_none_or(|(_, held)| held != slots);
         let (Some(belt), Some(bytes)) = (&mut self.belt, BufferSize::new(size)) else {
-            return renewed;
+            return moved;
         };
         for (&slot, buffer) in slots.iter().zip(&self.buffers) {
             let Some(layer) = frame.layers.get(slot) else {
@@ -66,7 +74,7 @@ impl Layers {
         }
         belt.finish_and_recall_on_submit(encoder);
         self.held = Some(key);
-        renewed
+        moved
     }
 
     /// Makes room for `count` layers of `bytes`.

@@ -2,7 +2,8 @@
 
 use glam::{UVec2, Vec2};
 
-use super::pipelines::Variant;
+use super::layers::SLOTS;
+use super::pipelines::{FALSE_COLOR, Variant};
 use crate::engine::film::{Frame, ToneMap};
 use crate::viewer::display::{Display, Tile};
 
@@ -29,12 +30,10 @@ impl Default for Placement {
 #[repr(C)]
 pub(super) struct TileUniform {
     frame: [u32; 2],
-    mask: u32,
     exposure: f32,
+    surround: f32,
     offset: [f32; 2],
     scale: [f32; 2],
-    surround: f32,
-    padding: [u32; 3],
 }
 
 /// A rectangle of the target in physical pixels.
@@ -95,38 +94,26 @@ pub fn picture_point(
 
 /// Linear grey around the picture.
 const SURROUND: f32 = 0.012;
-/// Index of false colours in the shader.
-const FALSE_COLOR: u32 = 4;
 
-/// The numbers of a tile at `rect` and the pipeline it needs; `slots` are the layers that were
-/// uploaded.
+/// The numbers of a tile at `rect` and the pipeline it needs.
 pub(super) fn uniform(
     frame: &Frame,
     display: &Display,
     placement: Placement,
     tile: &Tile,
     rect: PixelRect,
-    slots: &[usize],
 ) -> (TileUniform, Variant) {
     let (corner, scale) = place(rect, frame.full_size, placement);
     // A coarse frame covers the same rectangle with fewer pixels.
     let coarse = frame.size.as_vec2() / frame.full_size.max(UVec2::ONE).as_vec2();
     let scale_xy = coarse / scale;
-    let bit = |layer: &usize| slots.iter().position(|slot| slot == layer);
-    let mask = tile
-        .layers
-        .iter()
-        .filter_map(bit)
-        .fold(0, |m, i| m | 1 << i);
     let curve = ToneMap::ALL.iter().position(|m| *m == display.tonemap);
     let numbers = TileUniform {
         frame: frame.size.to_array(),
-        mask,
         exposure: tile.exposure.exp2(),
+        surround: SURROUND,
         offset: (-corner * scale_xy).to_array(),
         scale: scale_xy.to_array(),
-        surround: SURROUND,
-        padding: [0; 3],
     };
     let variant = Variant {
         curve: if display.false_color {
@@ -135,7 +122,7 @@ pub(super) fn uniform(
             curve.unwrap_or(0) as u32
         },
         smooth: frame.is_coarse() || scale < 1.0,
-        layers: slots.len() as u32,
+        layers: tile.layers.len().min(SLOTS) as u32,
     };
     (numbers, variant)
 }

@@ -6,8 +6,10 @@ mod layout;
 pub mod painter;
 mod picture;
 mod pipelines;
+mod points;
 #[cfg(test)]
 mod tests;
 
 pub use layout::{PixelRect, Placement, picture_point, place};
 pub use picture::{PictureCallback, Resources};
+pub use points::{Depths, Point, Points, PointsLayer};

@@ -4,23 +4,21 @@
 struct Tile {
     // Pixels of the layers.
     frame: vec2<u32>,
-    // Bit i: layer i is part of the sum.
-    mask: u32,
     // Factor on radiance.
     exposure: f32,
+    // Linear grey around the picture.
+    surround: f32,
     // Position on the layers, in their pixels, of the target's pixel position p:
     // offset + scale * p.
     offset: vec2<f32>,
     scale: vec2<f32>,
-    // Linear grey around the picture.
-    surround: f32,
 }
 
 // Index into ToneMap::ALL, or 4 for false colours.
 override curve: u32;
 // Interpolate between pixels.
 override smooth_pixels: bool;
-// Layers in the buffers.
+// Buffers whose sum is shown.
 override layers: u32;
 // The target encodes by itself.
 override target_encodes: bool;
@@ -54,16 +52,16 @@ fn radiance(at: vec2<i32>) -> vec4<f32> {
     let inside = clamp(at, vec2<i32>(0), vec2<i32>(tile.frame) - 1);
     let i = 3u * (u32(inside.y) * tile.frame.x + u32(inside.x));
     var sum = vec4<f32>(0.0);
-    if layers > 0u && (tile.mask & 1u) != 0u {
+    if layers > 0u {
         sum = add(sum, decode(vec3<u32>(layer0[i], layer0[i + 1u], layer0[i + 2u])));
     }
-    if layers > 1u && (tile.mask & 2u) != 0u {
+    if layers > 1u {
         sum = add(sum, decode(vec3<u32>(layer1[i], layer1[i + 1u], layer1[i + 2u])));
     }
-    if layers > 2u && (tile.mask & 4u) != 0u {
+    if layers > 2u {
         sum = add(sum, decode(vec3<u32>(layer2[i], layer2[i + 1u], layer2[i + 2u])));
     }
-    if layers > 3u && (tile.mask & 8u) != 0u {
+    if layers > 3u {
         sum = add(sum, decode(vec3<u32>(layer3[i], layer3[i + 1u], layer3[i + 2u])));
     }
     return sum;

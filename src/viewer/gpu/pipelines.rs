@@ -8,6 +8,9 @@ use egui_wgpu::wgpu;
 
 use super::layers::SLOTS;
 
+/// Index of false colours in the shader.
+pub const FALSE_COLOR: u32 = 4;
+
 /// What a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
@@ -15,7 +18,7 @@ pub struct Variant {
     pub curve: u32,
     /// Interpolates between pixels.
     pub smooth: bool,
-    /// Layers in the buffers.
+    /// Buffers whose sum is shown.
     pub layers: u32,
 }
 
@@ -38,6 +41,26 @@ impl Pipelines {
             layout: bind_group_layout(device),
             made: HashMap::new(),
         }
+    }
+
+    /// Of the targets.
+    pub fn format(&self) -> wgpu::TextureFormat {
+        self.format
+    }
+
+    /// A variant that has no pipeline yet; the likeliest first.
+    pub fn missing(&self) -> Option<Variant> {
+        let variant = |layers: u32| {
+            (0..=FALSE_COLOR).flat_map(move |curve| {
+                [false, true].map(|smooth| Variant {
+                    curve,
+                    smooth,
+                    layers,
+                })
+            })
+        };
+        let mut all = (1..SLOTS as u32).flat_map(variant);
+        all.find(|variant| !self.made.contains_key(variant))
     }
 
     /// The pipeline for `variant`.

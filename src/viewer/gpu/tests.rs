@@ -7,6 +7,7 @@ use glam::{UVec2, Vec2};
 
 use super::layout::{PixelRect, Placement};
 use super::picture::{PictureCallback, Resources};
+use super::points::{Depths, Point, PointResources, Points, PointsLayer};
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
 use crate::engine::film::{Frame, FrameLayer, ToneMap};
 use crate::engine::plan::RenderPlan;
@@ -49,6 +50,37 @@ fn shown(
 ) -> Vec<[u8; 4]> {
     let Gpu { device, queue } = gpu;
     let mut resources = Resources::new(device, format);
+    let picture = PictureCallback {
+        frame: Arc::clone(frame),
+        number: 1,
+        display,
+        placement: Placement::default(),
+        points: None,
+        area: egui::Rect::NOTHING,
+    };
+    let area = PixelRect {
+        min: Vec2::ZERO,
+        size: SIZE.as_vec2(),
+    };
+    drawn(
+        gpu,
+        format,
+        |encoder| {
+            resources.prepare(device, queue, encoder, &picture, area);
+            resources
+        },
+        |resources, pass| resources.paint(pass, SIZE.to_array()),
+    )
+}
+
+/// What is on a target of `format` after `prepare` and `paint`.
+fn drawn<R>(
+    gpu: &Gpu,
+    format: wgpu::TextureFormat,
+    prepare: impl FnOnce(&mut wgpu::CommandEncoder) -> R,
+    paint: impl FnOnce(&R, &mut wgpu::RenderPass<'_>),
+) -> Vec<[u8; 4]> {
+    let Gpu { device, queue } = gpu;
     let extent = wgpu::Extent3d {
         width: SIZE.x,
         height: SIZE.y,
@@ -71,18 +103,7 @@ fn shown(
         mapped_at_creation: false,
     });
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let picture = PictureCallback {
-        frame: Arc::clone(frame),
-        number: 1,
-        display,
-        placement: Placement::default(),
-        area: egui::Rect::NOTHING,
-    };
-    let area = PixelRect {
-        min: Vec2::ZERO,
-        size: SIZE.as_vec2(),
-    };
-    resources.prepare(device, queue, &mut encoder, &picture, area);
+    let prepared = prepare(&mut encoder);
     {
         let view = target.create_view(&wgpu::TextureViewDescriptor::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -94,7 +115,7 @@ fn shown(
             })],
             ..wgpu::RenderPassDescriptor::default()
         });
-        resources.paint(&mut pass, SIZE.to_array());
+        paint(&prepared, &mut pass);
     }
     encoder.copy_texture_to_buffer(
         target.as_image_copy(),
@@ -225,4 +246,133 @@ fn what_is_no_number_is_marked() {
     assert_eq!(bytes[3][..3], NAN_COLOR);
     assert_eq!(bytes[4][..3], [0, 255, 255]);
     assert_eq!(bytes[5][..3], [188; 3]);
+}
+
+/// Where 4 × 4 pixels of the colour lie.
+fn places(pixels: &[[u8; 4]], color: [u8; 3]) -> Vec<UVec2> {
+    let is = |p: &[u8; 4]| p[..3] == color;
+    let found = pixels.iter().enumerate().filter(|(_, p)| is(p));
+    found
+        .map(|(i, _)| UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x))
+        .collect()
+}
+
+#[test]
+fn points_lie_where_the_camera_sees_them_and_surfaces_hide_them() {
+    let Some(gpu) = gpu() else { return };
+    let camera = crate::engine::camera::Camera::new(&crate::engine::scene::desc::CameraDesc {
+        position: glam::Vec3::new(1.0, 2.0, 3.0),
+        target: glam::Vec3::ZERO,
+        vfov_deg: 40.0,
+        width: SIZE.x,
+        height: SIZE.y,
+        ..Default::default()
+    })
+    .expect("a view");
+    let films = [
+        Vec2::new(5.5, 2.5),
+        Vec2::new(40.5, 6.5),
+        Vec2::new(20.5, 4.5),
+        Vec2::new(60.5, 1.5),
+    ];
+    let at = |film: Vec2, t: f32| camera.generate_ray(film, Vec2::splat(0.5)).at(t).to_array();
+    let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0]];
+    let mut list: Vec<Point> = films
+        .iter()
+        .zip(colors)
+        .map(|(film, [r, g, b])| Point {
+            p: at(*film, 5.0),
+            color: [r, g, b, 255],
+        })
+        .collect();
+    list[2].p = at(films[2], -5.0); // behind the eye
+    let show = |side: u32, count: usize, depths: Depths| {
+        let callback = PointsLayer {
+            points: Points {
+                list: Arc::new(list.clone()),
+                number: 1,
+            },
+            count,
+            projection: camera.projection(),
+            place: (Vec2::ZERO, 1.0),
+            alone: false,
+            side,
+            depths: Arc::new(depths),
+        };
+        let format = wgpu::TextureFormat::Rgba8Unorm;
+        let mut resources = PointResources::new(&gpu.device, format);
+        drawn(
+            &gpu,
+            format,
+            |_| {
+                resources.prepare(&gpu.device, &gpu.queue, &callback, SIZE.as_vec2());
+                resources
+            },
+            |resources, pass| resources.paint(pass),
+        )
+    };
+    let open = show(1, 4, Depths::default());
+    for i in [0, 1, 3] {
+        assert_eq!(places(&open, colors[i]), [films[i].as_uvec2()], "{i}");
+    }
+    assert!(places(&open, colors[2]).is_empty());
+    let large = show(3, 4, Depths::default());
+    assert_eq!(places(&large, colors[0]).len(), 9);
+    assert_eq!(places(&large, colors[0])[4], films[0].as_uvec2());
+    // The first alone; then a wall over the left half, nearer than the points.
+    let first = show(1, 1, Depths::default());
+    assert!(places(&first, colors[1]).is_empty() && !places(&first, colors[0]).is_empty());
+    let wall = Depths {
+        size: [2, 1],
+        depths: vec![1.0, 1e30],
+    };
+    let behind = show(1, 4, wall);
+    assert!(places(&behind, colors[0]).is_empty() && !places(&behind, colors[1]).is_empty());
+}
+
+/// Prints how long a million points take on this machine's driver.
+#[test]
+fn a_million_points_are_drawn() {
+    let Some(gpu) = gpu() else { return };
+    let camera = crate::engine::camera::Camera::new(&crate::engine::scene::desc::CameraDesc {
+        position: glam::Vec3::new(0.0, 0.0, 3.0),
+        target: glam::Vec3::ZERO,
+        width: SIZE.x,
+        height: SIZE.y,
+        ..Default::default()
+    })
+    .expect("a view");
+    let n = 1_000_000;
+    let point = |i: u32| Point {
+        p: [
+            (i % 1000) as f32 * 2e-3 - 1.0,
+            (i / 1000) as f32 * 2e-3 - 1.0,
+            0.0,
+        ],
+        color: [255, 255, 255, 255],
+    };
+    let points = Points {
+        list: Arc::new((0..n).map(point).collect()),
+        number: 1,
+    };
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let mut resources = PointResources::new(&gpu.device, format);
+    for side in [1, 2] {
+        let callback = PointsLayer {
+            points: points.clone(),
+            count: n as usize,
+            projection: camera.projection(),
+            place: (Vec2::ZERO, 1.0),
+            alone: false,
+            side,
+            depths: Arc::default(),
+        };
+        for _ in 0..3 {
+            let start = std::time::Instant::now();
+            resources.prepare(&gpu.device, &gpu.queue, &callback, SIZE.as_vec2());
+            let pixels = drawn(&gpu, format, |_| (), |(), pass| resources.paint(pass));
+            assert!(!places(&pixels, [255; 3]).is_empty());
+            println!("{side}: {:?}", start.elapsed());
+        }
+    }
 }

@@ -1,8 +1,10 @@
 //! The window that shows folders.
 
+use egui::text::{CCursor, CCursorRange};
 use egui::{Align2, Button, Key, ScrollArea, TextEdit, Ui, Window};
 
 use crate::viewer::browser::{Browser, Entry, Purpose};
+use crate::viewer::measuring::reference::Reference;
 use crate::viewer::workspace::{Request, Workspace};
 
 /// Size of the window in points.
@@ -15,6 +17,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     };
     let title = match browser.purpose {
         Purpose::Open => "Open a scene, a state or a screenshot",
+        Purpose::Reference => "Open a reference (.exr, .hdr)",
         Purpose::Save => "Save picture (.png, .exr) or state (.json)",
     };
     let mut open = true;
@@ -45,8 +48,16 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         Some(path) if browser.purpose == Purpose::Open => {
             workspace.requests.push(Request::Open(path))
         }
+        Some(path) if browser.purpose == Purpose::Reference => open_reference(workspace, &path),
         Some(path) => workspace.requests.push(Request::SaveAs(path)),
         None => workspace.browser = Some(browser),
+    }
+}
+
+fn open_reference(workspace: &mut Workspace, path: &std::path::Path) {
+    match Reference::open(path) {
+        Ok(reference) => workspace.measuring.set_reference(reference),
+        Err(sentence) => workspace.notices.set_error("reference", sentence),
     }
 }
 
@@ -131,6 +142,10 @@ fn name(ui: &mut Ui, browser: &mut Browser, answer: &mut Answer) {
         let label = ui.label("Name");
         let edit = TextEdit::singleline(&mut browser.name).desired_width(f32::INFINITY);
         let response = ui.add(edit).labelled_by(label.id);
+        if std::mem::take(&mut browser.fresh) {
+            response.request_focus();
+            select_stem(ui, response.id, &browser.name);
+        }
         if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
             *answer = Answer::Accept;
         }
@@ -149,7 +164,7 @@ fn name(ui: &mut Ui, browser: &mut Browser, answer: &mut Answer) {
     }
     ui.horizontal(|ui| {
         let verb = match browser.purpose {
-            Purpose::Open => "Open file",
+            Purpose::Open | Purpose::Reference => "Open file",
             Purpose::Save => "Save file",
         };
         if ui.add(Button::new(verb)).clicked() {
@@ -159,4 +174,14 @@ fn name(ui: &mut Ui, browser: &mut Browser, answer: &mut Answer) {
             *answer = Answer::Cancel;
         }
     });
+}
+
+/// Selects a proposed name without its extension: what is typed replaces it.
+fn select_stem(ui: &Ui, id: egui::Id, name: &str) {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+    let (start, end) = (CCursor::new(0), CCursor::new(stem.chars().count()));
+    let range = CCursorRange::two(start, end);
+    state.cursor.set_char_range(Some(range));
+    state.store(ui.ctx(), id);
 }

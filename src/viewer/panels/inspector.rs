@@ -10,16 +10,25 @@ use crate::viewer::workspace::Workspace;
 
 /// Distance from the corner in points.
 const MARGIN: f32 = 12.0;
+/// The standard error is that of the 5 × 5 pixels around: two halves of one pixel know little.
+const REACH: u32 = 2;
 
 /// Draws the values at `cursor`, in physical pixels of the picture's area, at the top right of
-/// `rect`.
+/// `rect`, or at the top left while the cursor would be below them.
 pub fn show(ui: &Ui, workspace: &Workspace, rect: egui::Rect, cursor: Option<Vec2>) {
     if !workspace.inspector {
         return;
     }
+    let quarter = rect.size() * ui.ctx().pixels_per_point() / 2.0;
+    let (pivot, corner, margin) = match cursor {
+        Some(at) if at.x > quarter.x && at.y < quarter.y => {
+            (Align2::LEFT_TOP, rect.left_top(), MARGIN)
+        }
+        _ => (Align2::RIGHT_TOP, rect.right_top(), -MARGIN),
+    };
     Area::new(Id::unique("inspector"))
-        .pivot(Align2::RIGHT_TOP)
-        .fixed_pos(rect.right_top() + vec2(-MARGIN, MARGIN))
+        .pivot(pivot)
+        .fixed_pos(corner + vec2(margin, MARGIN))
         .interactable(false)
         .show(ui.ctx(), |ui| {
             style::overlay_frame().show(ui, |ui| {
@@ -66,6 +75,9 @@ fn values(workspace: &Workspace, cursor: Vec2) -> Option<Vec<(String, String)>> 
     for layer in &frame.layers {
         let rgb = layer.pixels.get(i)?;
         lines.push((layer.label.clone(), rgb.map(number).join(" ")));
+    }
+    if let Some(error) = frame.standard_error(held, REACH) {
+        lines.push(("std. error".to_owned(), error.map(number).join(" ")));
     }
     lines.push(("samples".to_owned(), frame.passes.to_string()));
     if let Some(hit) = picking::hit(workspace, cursor) {

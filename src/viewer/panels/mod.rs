@@ -5,19 +5,27 @@ mod browser;
 mod camera;
 mod components;
 mod display;
+mod error;
+mod error_plot;
+mod expressions;
 mod gallery;
 mod hand;
 mod help;
 mod inspector;
 mod notices;
 mod output;
+mod overlay;
 mod params;
+mod photon_lines;
+mod photons;
 mod picture;
 mod pixel_values;
 mod plan;
+mod referee;
 mod scene;
 mod statistics;
 mod status;
+mod strategies;
 mod style;
 mod widgets;
 
@@ -32,13 +40,17 @@ pub use style::apply as apply_style;
 type Section = (&'static str, bool, fn(&mut Ui, &mut Workspace));
 
 /// The panel's sections from top to bottom.
-const SECTIONS: [Section; 6] = [
+const SECTIONS: [Section; 10] = [
     ("Algorithm", true, algorithm::show),
     ("Components", true, components::show),
+    ("Expressions", false, expressions::show),
+    ("Photons", false, photons::show),
     ("Display", true, display::show),
     ("Camera", false, camera::show),
     ("Save", true, output::show),
     ("Statistics", false, statistics::show),
+    ("Error", false, error::show),
+    ("Referee", false, referee::show),
 ];
 
 /// Draws everything and lets the user's input change `workspace`.
@@ -59,6 +71,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             .requests
             .push(Request::Open(file.path().to_owned()));
     }
+    workspace.measuring.poll();
     style::follow_theme(ui, workspace.preferences.dark);
 
     Panel::bottom("status")
@@ -72,12 +85,15 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             .show(ui, |ui| side(ui, workspace));
         workspace.preferences.panel_width = panel.response.rect.width();
     }
+    photons::keep_up(ui, workspace);
     CentralPanel::no_frame().show(ui, |ui| picture::show(ui, workspace));
+    error_plot::large(ui, workspace);
     notices::show(ui, workspace);
     help::show(ui, workspace);
     gallery::show(ui, workspace);
     browser::show(ui, workspace);
 
+    workspace.settle();
     let busy = workspace.navigating || ui.input(|i| i.pointer.any_down());
     workspace.history.observe(&workspace.model, busy);
 }

@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Slider, TextEdit, Ui};
 
-use super::widgets;
+use super::{strategies, widgets};
 use crate::engine::integrators::{ParamKind, ParamSpec, Params};
 
 /// Widest range of integers that a slider shows; wider ones are dragged or typed.
@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, specs: &'static [ParamSpec], params: &mut Params) {
             ParamKind::Switch => switch(ui, spec, params),
             ParamKind::Integer(lo, hi) => integer(ui, spec, lo, hi, params),
             ParamKind::Number(lo, hi) => number(ui, spec, lo, hi, params),
-            ParamKind::Strategies => words(ui, spec, params),
+            ParamKind::Strategies => words(ui, spec, params).or(strategies::show(ui, spec, params)),
         };
         if let Some(text) = text {
             // The controls offer only what the description allows.

@@ -3,9 +3,10 @@
 use egui::{Align2, Color32, FontId, Rect, Sense, Ui, vec2};
 use glam::{UVec2, Vec2};
 
-use super::{hand, inspector, pixel_values};
+use super::{hand, inspector, overlay, photon_lines, pixel_values};
 use crate::viewer::display::Tile;
 use crate::viewer::gpu::PictureCallback;
+use crate::viewer::photons;
 use crate::viewer::workspace::Workspace;
 
 /// Draws the picture and lets the hand move it.
@@ -19,19 +20,29 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
     hand::follow(ui, &response, workspace);
+    if workspace.photons.choice.asks
+        && response.clicked()
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        let at = (at - rect.min) * scale;
+        photons::ask(workspace, Vec2::new(at.x, at.y));
+    }
     if let Some(frame) = &workspace.frame {
         let callback = PictureCallback {
             frame: frame.clone(),
             number: workspace.frame_number,
             display: workspace.model.display,
             placement: workspace.placement,
+            points: photon_lines::layer(workspace),
             area: rect,
         };
         let paint = egui_wgpu::Callback::new_paint_callback(rect, callback);
         ui.painter().add(paint);
+        photon_lines::show(ui, workspace, rect);
         labels(ui, rect, &workspace.model.display.tiles());
         pixel_values::show(ui, workspace, rect);
     }
+    overlay::show(ui, workspace, rect);
     let cursor = response.hover_pos().map(|at| (at - rect.min) * scale);
     inspector::show(ui, workspace, rect, cursor.map(|c| Vec2::new(c.x, c.y)));
 }

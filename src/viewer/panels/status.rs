@@ -44,13 +44,16 @@ fn progress(ui: &mut Ui, workspace: &Workspace) {
                 .on_hover_text("The chosen algorithm cannot keep up with a moving view.");
         }
     } else {
-        ui.label(format!("{} samples", frame.passes))
+        let plural = if frame.passes == 1 { "" } else { "s" };
+        ui.label(format!("{} sample{plural}", frame.passes))
             .on_hover_text("Samples a pixel.");
     }
     ui.label(seconds(frame.t_wall))
         .on_hover_text("Since the view or the settings last changed.");
-    ui.label(speed(frame))
-        .on_hover_text("Rays, shadow rays included.");
+    if frame.stats.rays > 0 {
+        ui.label(speed(frame))
+            .on_hover_text("Rays, shadow rays included.");
+    }
     if frame.relative_error.is_some_and(f64::is_finite) {
         ui.label(format!("error {}", error(frame)))
             .on_hover_text("Estimated root mean square error over the mean of the picture.");

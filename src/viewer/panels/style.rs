@@ -38,7 +38,8 @@ fn dark() -> Visuals {
 fn light() -> Visuals {
     let mut visuals = Visuals::light();
     visuals.panel_fill = Color32::from_gray(244);
-    visuals.window_fill = Color32::from_gray(250);
+    // Text fields are white: they must stand out.
+    visuals.window_fill = Color32::from_gray(240);
     visuals.override_text_color = Some(Color32::from_gray(40));
     accent(&mut visuals, Color32::from_rgb(168, 204, 236));
     visuals

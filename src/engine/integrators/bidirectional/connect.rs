@@ -1,7 +1,7 @@
 //! The strategies: what each adds, and with which weight.
 //!
 //! An end that is connected contributes no event probability. It is summed over its non-delta
-//! events, each with its own class and its own weight (CONTRACT rule 2).
+//! events, each with its own class and its own weight (rule 2 of the code map).
 
 use glam::{Vec2, Vec3A};
 

@@ -1,7 +1,7 @@
 //! Light vertices to be merged with eye vertices (Georgiev, Křivánek, Davidovič and Slusallek 2012,
 //! *Light Transport Simulation with Vertex Connection and Merging*), in a grid.
 //!
-//! Only vertices whose event is D have a merging strategy (CONTRACT rule 9): others are stored
+//! Only vertices whose event is D have a merging strategy (rule 9 of the code map): others are stored
 //! nowhere and count in no weight.
 
 use glam::{IVec3, Vec3A};

@@ -26,7 +26,8 @@ const ROW: usize = 32;
 
 /// The strategies (s, t) that are on: s vertices from the light, t from the lens.
 ///
-/// In words: `all`, `all-0,2-*,1` (all but these; `*` is any number), or `1,2+0,2` (these alone).
+/// In words: `all` or the first ones, then others added and taken away from left to right:
+/// `all-0,2-*,1` (all but these; `*` is any number), `1,2+0,2` (these alone), `1,*-1,3`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strategies {
     /// How those that are on share a path.
@@ -84,6 +85,20 @@ impl Strategies {
         self.all || self.on[s.min(ROW - 1)] & (1 << t.min(ROW - 1)) != 0
     }
 
+    /// `words`, those of these strategies, with (s, t) switched: its own last term is taken out if
+    /// that does it, otherwise one is added.
+    pub fn toggled_words(&self, words: &str, s: usize, t: usize) -> String {
+        let on = !self.is_on(s, t);
+        let own = format!("{}{s},{t}", if on { '-' } else { '+' });
+        if let Some(shorter) = words.strip_suffix(&own) {
+            let undone = shorter.parse::<Self>();
+            if undone.is_ok_and(|strategies| strategies.is_on(s, t) == on) {
+                return shorter.to_owned();
+            }
+        }
+        format!("{words}{}{s},{t}", if on { '+' } else { '-' })
+    }
+
     fn set(&mut self, (s, t): (Option<usize>, Option<usize>), on: bool) {
         let columns = t.map_or(u32::MAX, |t| 1 << t);
         for row in s.map_or(0..ROW, |s| s..s + 1) {
@@ -102,19 +117,23 @@ impl FromStr for Strategies {
 
     fn from_str(text: &str) -> Result<Self, ()> {
         let mut strategies = Self::all(Heuristic::Power);
-        if let Some(but) = text.strip_prefix("all") {
-            if but.is_empty() {
-                return Ok(strategies);
+        let (mut rest, mut on) = match text.strip_prefix("all") {
+            Some("") => return Ok(strategies),
+            Some(rest) => {
+                let sign = rest.chars().next().ok_or(())?;
+                (rest.strip_prefix(['+', '-']).ok_or(())?, sign == '+')
             }
-            for pair in but.strip_prefix('-').ok_or(())?.split('-') {
-                strategies.set(parse_pair(pair)?, false);
+            None => {
+                strategies.set((None, None), false);
+                (text, true)
             }
-            return Ok(strategies);
+        };
+        while let Some(at) = rest.find(['+', '-']) {
+            strategies.set(parse_pair(&rest[..at])?, on);
+            on = rest[at..].starts_with('+');
+            rest = &rest[at + 1..];
         }
-        strategies.set((None, None), false);
-        for pair in text.split('+') {
-            strategies.set(parse_pair(pair)?, true);
-        }
+        strategies.set(parse_pair(rest)?, on);
         Ok(strategies)
     }
 }
@@ -144,11 +163,31 @@ mod tests {
         assert!(on("all", 0, 2) && on("all", 100, 100));
         assert!(!on("all-0,2-*,1", 0, 2) && !on("all-0,2-*,1", 7, 1) && on("all-0,2-*,1", 0, 3));
         assert!(on("1,2+0,*", 1, 2) && on("1,2+0,*", 0, 60) && !on("1,2+0,*", 1, 3));
+        assert!(on("1,*-1,3", 1, 2) && !on("1,*-1,3", 1, 3) && !on("1,*-1,3", 2, 2));
+        assert!(on("all-1,*+1,3", 1, 3) && !on("all-1,*+1,3", 1, 2));
         assert_eq!("all".parse(), Ok(Strategies::all(Heuristic::Power)));
         for wrong in [
-            "", "al", "all-", "all+1,2", "1", "1,0", "1,2-1,3", "99,1", "1,2,3",
+            "", "al", "all-", "all+", "1", "1,0", "1,2-1", "-1,2", "99,1", "1,2,3", "1,2++1,3",
         ] {
             assert!(Strategies::from_str(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_strategy_switched_twice_is_as_before() {
+        for words in ["all", "all-*,1", "1,*", "1,2+0,2", "all-1,2"] {
+            for (s, t) in [(0, 2), (1, 2), (1, 1), (3, 4)] {
+                let of = |words: &str| Strategies::from_str(words).unwrap();
+                let once = of(words).toggled_words(words, s, t);
+                for (i, j) in (0..8).flat_map(|i| (1..8).map(move |j| (i, j))) {
+                    let switched = (i, j) == (s, t);
+                    let same = of(&once).is_on(i, j) == of(words).is_on(i, j);
+                    assert_eq!(same, !switched, "{words} {once}");
+                }
+                let twice = of(&once).toggled_words(&once, s, t);
+                assert_eq!(of(&twice), of(words), "{words} {twice}");
+                assert!(twice.len() <= words.len(), "{words} {twice}");
+            }
         }
     }
 }

@@ -254,7 +254,7 @@ impl Walker<'_> {
             // The next surface, or the sky.
             match transport {
                 Transport::Radiance => stats.ray_at(events as u32),
-                Transport::Importance => stats.rays += 1,
+                Transport::Importance => stats.light_ray_at(events as u32),
             }
             let (si, phase, key) = if self.cx.plan.features.media {
                 let (class, before) = (flight.class, flight.throughput);
@@ -332,7 +332,7 @@ impl Walker<'_> {
             // Russian roulette: survival divides the throughput and enters no weight.
             if events + 1 > self.roulette {
                 let survival = flight.kept.max_component().min(MAX_SURVIVAL);
-                if roulette >= survival {
+                if !stats.play(roulette < survival) {
                     return None;
                 }
                 flight.throughput *= 1.0 / survival;

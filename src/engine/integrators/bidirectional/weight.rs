@@ -7,7 +7,7 @@
 //! p(i) / p(s) follow by one division a step from the densities that both walks keep (Veach,
 //! equation 10.9).
 //!
-//! A vertex is (point, event): its density contains the probability of the event (CONTRACT rule 2).
+//! A vertex is (point, event): its density contains the probability of the event (rule 2 of the code map).
 //! Roulette, absorption and transmittance are in no density.
 
 use super::strategies::Strategies;

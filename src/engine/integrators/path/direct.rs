@@ -55,7 +55,7 @@ impl PathTracer {
     }
 
     /// The contribution of one light sample, summed over the non-delta events of `bsdf`, each
-    /// with the class and the weight of its own (CONTRACT rule 2).
+    /// with the class and the weight of its own (rule 2 of the code map).
     #[expect(clippy::too_many_arguments, reason = "see add_direct")]
     fn add_light_sample(
         &self,

@@ -132,13 +132,13 @@ pub(super) fn missing(features: &SceneFeatures, params: &Params) -> Option<Missi
         let why = "a walk never meets a light of zero size by chance";
         return Some(Missing {
             words: "L.*E".into(),
-            why,
+            why: why.into(),
         });
     }
     let why = "light of a point, spot or directional source that first meets a mirror or glass \
                arrives by no shadow ray and by no chance hit";
     features.specular.then_some(Missing {
         words: "LS.*E".into(),
-        why,
+        why: why.into(),
     })
 }

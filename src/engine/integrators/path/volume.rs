@@ -217,7 +217,9 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         self.sampler.seek(self.first + 3);
         let roulette = self.sampler.next_1d();
         let goes_on = !plan.is_pointless(self.walk.suffix)
-            && self.walk.survives(self.tracer.roulette, roulette);
+            && self
+                .walk
+                .survives(self.tracer.roulette, roulette, self.stats);
         goes_on.then_some(())
     }
 

@@ -86,13 +86,13 @@ impl Walk {
 
     /// Russian roulette after `from` events with the random number `u`; false if the walk ends.
     /// Survival divides the throughput and enters no weight.
-    pub fn survives(&mut self, from: u32, u: f32) -> bool {
+    pub fn survives(&mut self, from: u32, u: f32, stats: &mut RenderStats) -> bool {
         if self.depth <= from {
             return !self.throughput.is_black();
         }
         let survival = (self.throughput.max_component() * self.eta2).min(MAX_SURVIVAL);
         self.throughput *= 1.0 / survival;
-        u < survival
+        stats.play(u < survival)
     }
 }
 
@@ -162,7 +162,7 @@ impl RayIntegrator for PathTracer {
                 return;
             }
 
-            if !walk.survives(self.roulette, roulette) {
+            if !walk.survives(self.roulette, roulette, stats) {
                 return;
             }
             ray = si.spawn_ray(sample.wi);

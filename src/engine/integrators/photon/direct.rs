@@ -23,7 +23,7 @@ pub(super) struct Scattered {
 impl Estimator {
     /// A shadow ray to one light. The D event takes it with weight 1, since nothing else counts
     /// words whose light part before it is empty; the G event shares it with the walk's own hits
-    /// (CONTRACT rules 2 and 7).
+    /// (rules 2 and 7 of the code map).
     #[expect(
         clippy::too_many_arguments,
         reason = "the state of one walk; a struct would be made and taken apart once a vertex"

@@ -161,7 +161,7 @@ impl Estimator {
             walk.depth += 1;
             // Relative to what the ray began with: a share of a gather is no loss.
             walk.throughput *= 1.0 / started_with;
-            let survives = walk.survives(roulette);
+            let survives = walk.survives(roulette, stats);
             walk.throughput *= started_with;
             if !survives {
                 return;

@@ -71,12 +71,7 @@ impl PhotonMapper {
     }
 
     fn key(&self, cx: &Pass<'_>) -> MapsKey {
-        let index = if self.settings.fresh_maps {
-            cx.index
-        } else {
-            0
-        };
-        maps_key(&self.settings, cx, index)
+        maps_key(&self.settings, cx, map_index(&self.settings, cx))
     }
 
     /// Builds the maps this pass needs, where they are not there yet.
@@ -136,6 +131,11 @@ impl PhotonMapper {
     }
 }
 
+/// Which of several independent maps a pass reads.
+fn map_index(settings: &PhotonSettings, cx: &Pass<'_>) -> u64 {
+    if settings.fresh_maps { cx.index } else { 0 }
+}
+
 fn maps_key(settings: &PhotonSettings, cx: &Pass<'_>, index: u64) -> MapsKey {
     let features = &cx.plan.features;
     // What is seen in a mirror reads both maps, whatever is blackened; without mirrors there are
@@ -166,7 +166,9 @@ fn build_maps(
     let check = || cx.cancel.check();
     let maps = PhotonMaps::build(cx.scene, &cx.plan.classes, &key.settings, &check)?;
     for counts in maps.counts() {
-        stats.rays += counts.rays;
+        stats.rays += counts.rays - counts.levels.iter().sum::<u64>();
+        stats.add_light_rays(&counts.levels);
+        stats.add_games(counts.roulette[0], counts.roulette[1]);
         stats.cut_paths += counts.cut;
     }
     Ok(maps)
@@ -199,6 +201,7 @@ impl Estimator {
                 settings.global_radius * radius,
             ],
             nearest: ((settings.nearest as f32 * scale).round() as usize).max(2),
+            numbers: (cx.seed, map_index(settings, cx)),
         }
     }
 
@@ -238,6 +241,15 @@ impl Integrator for PhotonMapper {
             .as_ref()
             .is_some_and(|(have, _)| have.serves(&self.key(cx)));
         !built || self.settings.indirect != Indirect::Direct
+    }
+
+    fn memory_bytes(&self) -> usize {
+        let maps = self
+            .maps
+            .as_ref()
+            .map_or(0, |(_, maps)| maps.memory_bytes());
+        let cache = self.cache().map_or(0, IrradianceCache::memory_bytes);
+        self.tiled.buffer_bytes() + maps + cache
     }
 
     fn facts(&self) -> Vec<Fact> {

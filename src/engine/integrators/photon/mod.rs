@@ -38,17 +38,30 @@ pub const ENTRY: Entry = Entry {
     build: |params| Box::new(PhotonMapper::new(PhotonSettings::new(params))),
 };
 
-fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
-    if features.shining_media {
-        return Some(Missing {
-            words: "L.*(D|V).*E".into(),
-            why: "light that a medium emits sends no photons and no shadow rays",
-        });
-    }
-    let why = "light of a point, spot or directional source that reaches the eye without a \
-               diffuse surface on its way is met by no ray and lands as no photon";
-    (features.zero_size_lights && features.specular).then_some(Missing {
-        words: "LS(S|G)*E".into(),
-        why,
+fn missing(features: &SceneFeatures, params: &Params) -> Option<Missing> {
+    let settings = PhotonSettings::new(params);
+    let shining = (
+        "L.*(D|V).*E",
+        "light that a medium emits sends no photons and no shadow rays",
+    );
+    let lights = (
+        "LS(S|G)*E",
+        "light of a point, spot or directional source that reaches the eye without a diffuse \
+         surface on its way is met by no ray and lands as no photon",
+    );
+    let caustic = ("L(S|G)+DE", "the caustic map is switched off");
+    let global = ("L.*D.*DE", "the global map is switched off");
+    let bent = features.specular || features.glossy;
+    let all = [
+        (features.shining_media, shining),
+        (features.zero_size_lights && features.specular, lights),
+        (!settings.caustic_map && features.diffuse && bent, caustic),
+        (!settings.global_map && features.diffuse, global),
+    ];
+    let lost = all.iter().filter(|(is_lost, _)| *is_lost);
+    let (words, reasons): (Vec<&str>, Vec<&str>) = lost.map(|(_, lost)| *lost).unzip();
+    (!words.is_empty()).then(|| Missing {
+        words: words.join("|").into(),
+        why: reasons.join("; ").into(),
     })
 }

@@ -7,8 +7,12 @@ use super::walk::Estimator;
 use crate::engine::geometry::SurfaceInteraction;
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::math::Rgb;
+use crate::engine::path::PathClasses;
+use crate::engine::photon::emission::Emission;
 use crate::engine::photon::irradiance_cache::IrradianceCache;
-use crate::engine::photon::{Disc, MapKind, Nearest, PhotonMap, PhotonMaps, Weighed};
+use crate::engine::photon::{
+    Disc, MapKind, Nearest, PhotonMap, PhotonMaps, PhotonPath, ProjectionMap, Weighed,
+};
 use crate::engine::sampling::{IndependentSampler, Stream};
 use crate::engine::scene::Scene;
 
@@ -51,6 +55,29 @@ impl PhotonView {
     /// The records of interpolated gathers, if there are any.
     pub fn cache(&self) -> Option<&IrradianceCache> {
         self.0.cache.as_deref()
+    }
+
+    /// The ways of the photons of numbers `range` of a map, from their light on; `classes` are
+    /// those of the render's plan.
+    pub fn paths(
+        &self,
+        scene: &Scene,
+        classes: &PathClasses,
+        kind: MapKind,
+        range: std::ops::Range<u64>,
+    ) -> Vec<PhotonPath> {
+        let (Some(map), Some(settings)) = (self.map(kind), self.0.settings) else {
+            return Vec::new();
+        };
+        let emission = match kind {
+            MapKind::Caustic => Emission::aimed(scene, ProjectionMap::new(scene)),
+            MapKind::Global | MapKind::Volume => Some(Emission::Everywhere),
+        };
+        let (seed, index) = self.0.numbers;
+        let range = range.start..range.end.min(map.counts.emitted);
+        emission.map_or_else(Vec::new, |emission| {
+            map.paths(scene, classes, &emission, &settings.map(seed, index), range)
+        })
     }
 
     /// The estimate of a map at `si` as a render makes it where the eye looks.

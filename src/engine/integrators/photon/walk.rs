@@ -43,6 +43,8 @@ pub struct Estimator {
     pub volume_radius: f32,
     /// Photons of an estimate.
     pub nearest: usize,
+    /// Seed of the photons, and which of several independent maps they are.
+    pub numbers: (u64, u64),
 }
 
 /// The state of a walk between two vertices.
@@ -72,12 +74,12 @@ impl Walk {
     }
 
     /// Russian roulette: survival divides the throughput and enters no weight.
-    pub fn survives(&mut self, u: f32) -> bool {
+    pub fn survives(&mut self, u: f32, stats: &mut RenderStats) -> bool {
         if self.depth <= ROULETTE_EVENTS {
             return !self.throughput.is_black();
         }
         let survival = (self.throughput.max_component() * self.eta2).min(MAX_SURVIVAL);
-        if u >= survival {
+        if !stats.play(u < survival) {
             return false;
         }
         self.throughput *= 1.0 / survival;
@@ -114,7 +116,7 @@ impl RayIntegrator for Estimator {
             let roulette = sampler.next_1d();
 
             // The next surface, or the sky; light that the walk met by itself.
-            stats.rays += 1;
+            stats.ray_at(walk.depth);
             let Some(si) = cx.scene.intersect(&ray, || opacity_number(sampler, first)) else {
                 self.add_escaped(cx, &walk, &ray, out);
                 return;
@@ -155,7 +157,7 @@ impl RayIntegrator for Estimator {
             walk.eta2 *= sample.eta * sample.eta;
             walk.suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
             walk.depth += 1;
-            if cx.plan.is_pointless(walk.suffix) || !walk.survives(roulette) {
+            if cx.plan.is_pointless(walk.suffix) || !walk.survives(roulette, stats) {
                 return;
             }
             walk.last = Some(Scattered {

@@ -224,6 +224,10 @@ impl Metropolis {
 }
 
 impl Integrator for Metropolis {
+    fn memory_bytes(&self) -> usize {
+        self.splats.as_ref().map_or(0, SplatBuffer::bytes)
+    }
+
     fn render_pass(&mut self, cx: &Pass<'_>, film: &mut Film) -> Result<RenderStats, Cancelled> {
         let (size, planned) = (film.size(), cx.plan.planned);
         let parity = cx.index % 2;
