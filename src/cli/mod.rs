@@ -26,8 +26,8 @@ use clap::{CommandFactory, Parser};
 use args::{Cli, Command};
 use error::CliError;
 
-#[cfg(feature = "viewer")]
 use crate::cli::print::note;
+#[cfg(feature = "viewer")]
 use crate::viewer::opening::Opening;
 
 /// Runs the program on the process's arguments.
