@@ -12,6 +12,7 @@ fn another_scale_is_the_same_window_with_more_pixels() {
         return;
     };
     let desktop = Desktop::connect(&screen.display);
+    desktop.set_dpi(96);
     let folder = tempfile::tempdir().expect("a folder");
     let mut program = Program::start(&screen, folder.path(), &reference("cornell-diffuse"));
     program.wait_for_picture();
@@ -30,6 +31,7 @@ fn another_scale_is_the_same_window_with_more_pixels() {
     let before = panel();
 
     desktop.set_dpi(144);
+    desktop.tell_place(program.window());
     program.wait_for("it is half as large again", |p| difference(p, &still) > 3.0);
     program.settle();
     let after = panel();
@@ -39,6 +41,7 @@ fn another_scale_is_the_same_window_with_more_pixels() {
     );
 
     desktop.set_dpi(96);
+    desktop.tell_place(program.window());
     program.resize(900, 640);
     program.wait_for("the old scale is the old picture", |p| {
         difference(p, &still) < 3.0

@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 use x11rb::connection::Connection;
 use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
-    Atom, AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, PropMode,
-    SELECTION_NOTIFY_EVENT, SelectionNotifyEvent, SelectionRequestEvent, Window, WindowClass,
+    Atom, CONFIGURE_NOTIFY_EVENT, ClientMessageEvent, ConfigureNotifyEvent, ConnectionExt as _,
+    CreateWindowAux, EventMask, PropMode, SELECTION_NOTIFY_EVENT, SelectionNotifyEvent,
+    SelectionRequestEvent, Window, WindowClass,
 };
 use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
@@ -20,7 +21,6 @@ const XDND_VERSION: u32 = 5;
 /// Another program on the same display.
 pub struct Desktop {
     connection: RustConnection,
-    root: Window,
     /// Where answers arrive.
     own: Window,
 }
@@ -46,26 +46,58 @@ impl Desktop {
             )
             .and_then(|_| connection.flush())
             .expect("a window");
-        Self {
-            connection,
-            root,
-            own,
-        }
+        Self { connection, own }
     }
 
-    /// Sets the desktop's resolution; 96 is scale 1.
-    pub fn set_dpi(&self, dpi: u32) {
-        let text = format!("Xft.dpi:\t{dpi}\n");
+    /// Sets the desktop's resolution; 96 is scale 1. Programs look for the settings when they start,
+    /// so the first resolution is set before.
+    ///
+    /// It is an XSETTINGS manager of one setting: winit hears of these alone, not of the resources
+    /// of the root window (<https://specifications.freedesktop.org/xsettings-spec/>).
+    pub fn set_dpi(&self, dpi: i32) {
+        const NAME: &[u8; 7] = b"Xft/DPI";
+        let serial = dpi as u32;
+        // Little endian; the serial; one setting, an integer; its name, padded to four bytes.
+        let mut bytes = vec![0, 0, 0, 0];
+        bytes.extend(serial.to_le_bytes());
+        bytes.extend(1_u32.to_le_bytes());
+        bytes.extend([0, 0, NAME.len() as u8, 0]);
+        bytes.extend(NAME);
+        bytes.push(0);
+        bytes.extend(serial.to_le_bytes());
+        bytes.extend((dpi * 1024).to_le_bytes());
+        let settings = self.atom("_XSETTINGS_SETTINGS");
+        let manager = self.atom("_XSETTINGS_S0");
         self.connection
-            .change_property8(
-                PropMode::REPLACE,
-                self.root,
-                AtomEnum::RESOURCE_MANAGER,
-                AtomEnum::STRING,
-                text.as_bytes(),
-            )
+            .change_property8(PropMode::REPLACE, self.own, settings, settings, &bytes)
+            .and_then(|_| {
+                self.connection
+                    .set_selection_owner(self.own, manager, x11rb::CURRENT_TIME)
+            })
             .and_then(|_| self.connection.flush())
-            .expect("the property is set");
+            .expect("the setting is set");
+    }
+
+    /// Tells a window where it is, as window managers do whenever they move it (ICCCM 4.1.5); here is
+    /// none. winit looks for the scale of a window's monitor then.
+    pub fn tell_place(&self, window: &str) {
+        let window = window.parse().expect("a number");
+        let geometry = self.connection.get_geometry(window).expect("the server");
+        let place = geometry.reply().expect("a window");
+        let event = ConfigureNotifyEvent {
+            response_type: CONFIGURE_NOTIFY_EVENT,
+            event: window,
+            window,
+            x: place.x,
+            y: place.y,
+            width: place.width,
+            height: place.height,
+            ..ConfigureNotifyEvent::default()
+        };
+        self.connection
+            .send_event(false, window, EventMask::STRUCTURE_NOTIFY, event)
+            .and_then(|_| self.connection.flush())
+            .expect("the event is sent");
     }
 
     /// Drags a file over a window and lets it fall.
