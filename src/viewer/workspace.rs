@@ -114,6 +114,8 @@ pub struct Workspace {
     pub navigating: bool,
     /// The button that moves the camera.
     pub hold: Option<Hold>,
+    /// The keys that fly and are held.
+    pub flying: Vec<egui::Key>,
     /// The render stands still.
     pub paused: bool,
     /// How the picture lies in its area.
@@ -161,6 +163,7 @@ impl Workspace {
             gpu_bytes: 0,
             navigating: false,
             hold: None,
+            flying: Vec::new(),
             paused: false,
             placement: Placement::default(),
             help: false,

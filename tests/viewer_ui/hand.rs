@@ -149,6 +149,33 @@ fn flying_goes_on_while_the_key_is_held() {
 }
 
 #[test]
+fn the_letter_of_a_shortcut_does_not_fly_when_ctrl_is_let_go_first() {
+    let mut desk = desk();
+    let before = view(&desk);
+    let letter = |desk: &Desk, pressed, modifiers| {
+        let event = Event::Key {
+            key: Key::E,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers,
+        };
+        desk.event_modifiers(event, modifiers);
+    };
+    letter(&desk, true, Modifiers::COMMAND);
+    desk.run_steps(2);
+    // The system repeats a held key, now without Ctrl.
+    letter(&desk, true, Modifiers::NONE);
+    desk.run_steps(5);
+    letter(&desk, false, Modifiers::NONE);
+    desk.run_steps(2);
+    assert_eq!(view(&desk), before);
+    desk.key_down(Key::E);
+    desk.run_steps(2);
+    assert_ne!(view(&desk), before, "alone it flies");
+}
+
+#[test]
 fn a_double_click_brings_the_point_to_the_middle() {
     let mut desk = desk();
     let before = view(&desk);

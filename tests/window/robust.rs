@@ -103,7 +103,7 @@ fn a_lost_device_is_replaced() {
 }
 
 #[test]
-fn a_minute_of_a_random_hand_leaves_no_error_and_no_memory_behind() {
+fn a_minute_of_a_random_hand_leaves_no_error() {
     let Some(screen) = Screen::start() else {
         return;
     };
@@ -118,4 +118,12 @@ fn a_minute_of_a_random_hand_leaves_no_error_and_no_memory_behind() {
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{report}{message}");
     assert!(report.contains("errors: 0"), "{report}");
+    // A minute is too short to tell a slow leak, but not one of a picture a frame.
+    let (_, memory) = report.split_once("MiB after each round:").expect("memory");
+    let last = memory
+        .lines()
+        .next()
+        .and_then(|l| l.split_whitespace().last());
+    let last: f64 = last.expect("a round").parse().expect("a number");
+    assert!(last < 1024.0, "{report}");
 }

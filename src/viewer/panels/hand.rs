@@ -17,12 +17,15 @@ const POINTS_PER_NOTCH: f32 = 50.0;
 const SPEED: f32 = 0.7;
 /// Factor on the speed while Shift is held.
 const FAST: f32 = 4.0;
+/// Keys that fly.
+const FLYING: [Key; 6] = [Key::W, Key::A, Key::S, Key::D, Key::Q, Key::E];
 /// Longest step of flight in seconds: after a stall the camera must not leap.
 const MAX_STEP: f32 = 0.1;
 
 /// Moves the camera of `workspace` as the hand on the picture, `response`, wants.
 pub fn follow(ui: &Ui, response: &Response, workspace: &mut Workspace) {
     workspace.navigating = false;
+    hold_flying_keys(ui, &mut workspace.flying);
     drag(ui, response, workspace);
     wheel(ui, response, workspace);
     fly(ui, response, workspace);
@@ -37,21 +40,39 @@ fn centered(rect: Rect, at: egui::Pos2) -> Vec2 {
     Vec2::new(from.x, from.y) / rect.height().max(1.0)
 }
 
-fn flying_keys(ui: &Ui) -> Vec3 {
-    if ui.ctx().text_edit_focused() {
-        return Vec3::ZERO;
-    }
+/// Takes up and lets go the keys that fly. What counts is how a key was pressed: the letter of a
+/// shortcut is often let go after Ctrl is, and must not fly then.
+fn hold_flying_keys(ui: &Ui, flying: &mut Vec<Key>) {
+    let typing = ui.ctx().text_edit_focused();
     ui.input(|i| {
-        if i.modifiers.ctrl || i.modifiers.command || i.modifiers.alt {
-            return Vec3::ZERO;
+        for event in &i.events {
+            if let Event::Key {
+                key,
+                pressed: true,
+                repeat: false,
+                modifiers,
+                ..
+            } = *event
+                && !(typing || modifiers.ctrl || modifiers.command || modifiers.alt)
+                && FLYING.contains(&key)
+                && !flying.contains(&key)
+            {
+                flying.push(key);
+            }
         }
-        let axis = |more, less| f32::from(i.key_down(more)) - f32::from(i.key_down(less));
-        Vec3::new(
-            axis(Key::D, Key::A),
-            axis(Key::E, Key::Q),
-            axis(Key::W, Key::S),
-        )
-    })
+        // Also what was let go while another window had the keyboard.
+        flying.retain(|&key| i.key_down(key));
+    });
+}
+
+/// To the right, up and forward.
+fn flight(flying: &[Key]) -> Vec3 {
+    let held = |key| f32::from(flying.contains(&key));
+    Vec3::new(
+        held(Key::D) - held(Key::A),
+        held(Key::E) - held(Key::Q),
+        held(Key::W) - held(Key::S),
+    )
 }
 
 /// Takes the events one by one: however rarely the window is drawn, no drag is lost.
@@ -103,7 +124,7 @@ fn move_by(
     let step = Vec2::new(moved.x, moved.y) / response.rect.height().max(1.0);
     let view = &workspace.model.view;
     let left = button == PointerButton::Primary;
-    workspace.model.view = if left && flying_keys(ui) != Vec3::ZERO {
+    workspace.model.view = if left && flight(&workspace.flying) != Vec3::ZERO {
         navigation::look(view, step * TURN)
     } else if left && !modifiers.shift {
         navigation::orbit(view, step * TURN)
@@ -140,7 +161,7 @@ fn wheel(ui: &Ui, response: &Response, workspace: &mut Workspace) {
 }
 
 fn fly(ui: &Ui, response: &Response, workspace: &mut Workspace) {
-    let direction = flying_keys(ui);
+    let direction = flight(&workspace.flying);
     if direction == Vec3::ZERO {
         return;
     }
