@@ -109,7 +109,7 @@ fn window(_scene: Option<&str>) -> Result<(), CliError> {
 fn window(scene: Option<&str>) -> Result<(), CliError> {
     let name = scene.unwrap_or(scene::DEFAULT_SCENE);
     let opening = Opening::named(name).map_err(CliError::Usage)?;
-    let mut read = opening.source.read();
+    let mut read = opening.read();
     if let Err(sentence) = &mut read.desc {
         return Err(CliError::Usage(std::mem::take(sentence)));
     }

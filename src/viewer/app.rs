@@ -196,6 +196,7 @@ impl App {
                         .show_scene(opening, scene, again, loaded.hash);
                 }
                 Err(sentence) => {
+                    self.workspace.sequence.plays = false;
                     // The old scene stays; it is read again when one of its files is mended.
                     if same {
                         self.watch = Watch::new(loaded.files);
@@ -296,7 +297,8 @@ impl App {
                     Ok(opening) => self.load(opening, None, false),
                     Err(sentence) => self.workspace.notices.set_error("scene", sentence),
                 },
-                Request::Reload => self.reload(),
+                Request::Reload => self.show_frame(self.workspace.sequence.at),
+                Request::Frame(frame) => self.show_frame(frame),
                 Request::SaveAs(path) => self.save_as(path),
                 Request::Save(format) => self.save(format),
                 Request::SavePlot(extension) => self.save_plot(extension),
@@ -311,9 +313,10 @@ impl App {
         }
     }
 
-    fn reload(&mut self) {
+    /// Reads a frame of the scene that is shown; of a still the only one, 0, again.
+    fn show_frame(&mut self, frame: u32) {
         let source = self.workspace.model.source.clone();
-        self.load(Opening::scene(source), None, true);
+        self.load(Opening::of_frame(source, frame), None, true);
     }
 
     /// Renders the gallery's pictures when they are wanted first.
@@ -452,7 +455,7 @@ impl ApplicationHandler<Wake> for App {
             self.request_redraw();
         }
         if self.watch.changed(Instant::now()) {
-            self.reload();
+            self.show_frame(self.workspace.sequence.at);
             self.request_redraw();
         }
         self.warm_up();

@@ -36,6 +36,8 @@ pub enum Command {
     Solo(usize),
     /// All components side by side.
     Grid,
+    /// What a medium scatters alone.
+    Volume,
     /// Luminance as colours.
     FalseColor,
     /// A third of a stop brighter.
@@ -213,6 +215,12 @@ pub const TABLE: &[Binding] = &[
         &[key(Key::Num5)],
         "Side by side",
         "Show all four components at once.",
+    ),
+    bind(
+        Command::Volume,
+        &[key(Key::Num6)],
+        "Volume alone",
+        "Light that fog, smoke or another medium scatters, once or more often.",
     ),
     bind(
         Command::FalseColor,

@@ -58,6 +58,7 @@ impl App {
             frame.passes,
             &workspace.scene_hash,
         )
+        .of_frame(workspace.sequence.at)
     }
 
     fn write_picture(&self, path: PathBuf, format: Format, frame: Arc<Frame>) {

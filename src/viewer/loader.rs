@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::opening::Opening;
-use super::source::{Read, SceneSource};
+use super::source::Read;
 use crate::engine::scene::Scene;
 
 /// What became of a request.
@@ -59,7 +59,7 @@ impl Loader {
         let wake = Arc::clone(&self.wake);
         let work = move || {
             let source = &opening.source;
-            let (scene, files, hash) = catch_unwind(AssertUnwindSafe(|| prepare(source, read)))
+            let (scene, files, hash) = catch_unwind(AssertUnwindSafe(|| prepare(&opening, read)))
                 .unwrap_or_else(|_| {
                     let sentence = format!("a bug stopped the reading of {source}");
                     (Err(sentence), Vec::new(), String::new())
@@ -91,10 +91,10 @@ impl Loader {
 
 /// The scene, its files and its hash.
 fn prepare(
-    source: &SceneSource,
+    opening: &Opening,
     read: Option<Read>,
 ) -> (Result<Arc<Scene>, String>, Vec<PathBuf>, String) {
-    let read = read.unwrap_or_else(|| source.read());
+    let (source, read) = (&opening.source, read.unwrap_or_else(|| opening.read()));
     let build = |desc| Scene::build(&desc).map_err(|error| format!("{source}: {error}"));
     let scene = read.desc.and_then(build).map(Arc::new);
     (scene, read.files, read.hash)

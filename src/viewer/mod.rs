@@ -30,6 +30,7 @@ mod plot_files;
 pub mod preferences;
 mod rendering;
 mod saver;
+pub mod sequence;
 mod shown;
 pub mod soak;
 pub mod source;

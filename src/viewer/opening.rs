@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use super::source::SceneSource;
+use super::source::{Read, SceneSource};
 use super::state::{KEY, State};
 use crate::picture::{exr_file, png_file};
 
@@ -13,6 +13,8 @@ use crate::picture::{exr_file, png_file};
 pub struct Opening {
     /// The scene.
     pub source: SceneSource,
+    /// Which frame of it, if it is a sequence.
+    pub frame: u32,
     /// All the rest, where a state says it.
     pub state: Option<Box<State>>,
 }
@@ -32,10 +34,21 @@ impl Opening {
 
     /// A scene with the settings there are.
     pub fn scene(source: SceneSource) -> Self {
+        Self::of_frame(source, 0)
+    }
+
+    /// A frame of a sequence with the settings there are.
+    pub fn of_frame(source: SceneSource, frame: u32) -> Self {
         Self {
             source,
+            frame,
             state: None,
         }
+    }
+
+    /// Reads the scene.
+    pub fn read(&self) -> Read {
+        self.source.read_frame(self.frame)
     }
 
     /// What a file holds.
@@ -56,6 +69,7 @@ impl Opening {
         let state = State::from_json(&text).map_err(|e| format!("{}: {e}", path.display()))?;
         Ok(Self {
             source: state.source(Some(path)),
+            frame: state.frame(),
             state: Some(Box::new(state)),
         })
     }
@@ -103,6 +117,7 @@ mod tests {
         let exr = exr_file::encode(size, &[("whole", &[[0.0; 3]; 2])], &texts).expect("an EXR");
         let expected = Opening {
             source: model.source.clone(),
+            frame: 0,
             state: Some(Box::new(state)),
         };
         for (name, bytes) in [

@@ -43,8 +43,10 @@ pub enum Drawn {
     Caustic,
     /// Those of the global map.
     Global,
-    /// Those of both.
-    Both,
+    /// Those of the volume map.
+    Volume,
+    /// Those of all maps.
+    All,
 }
 
 impl Drawn {
@@ -54,7 +56,8 @@ impl Drawn {
             Self::None => &[],
             Self::Caustic => &[MapKind::Caustic],
             Self::Global => &[MapKind::Global],
-            Self::Both => &[MapKind::Caustic, MapKind::Global],
+            Self::Volume => &[MapKind::Volume],
+            Self::All => &[MapKind::Caustic, MapKind::Global, MapKind::Volume],
         }
     }
 }
@@ -126,6 +129,7 @@ impl Choice {
     pub fn map(&self) -> MapKind {
         match self.drawn {
             Drawn::Caustic => MapKind::Caustic,
+            Drawn::Volume => MapKind::Volume,
             _ => MapKind::Global,
         }
     }

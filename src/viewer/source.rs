@@ -31,10 +31,15 @@ impl SceneSource {
     /// Reads it. Besides the scene it tells which files it is made of, also where it fails: an
     /// error goes away when one of them is mended.
     pub fn read(&self) -> Read {
+        self.read_frame(0)
+    }
+
+    /// Reads a frame of a sequence; a still has frame 0 only.
+    pub fn read_frame(&self, frame: u32) -> Read {
         let path = match self {
             Self::Embedded(id) => {
                 return Read {
-                    desc: embedded::read(id).map_err(|error| error.to_string()),
+                    desc: embedded::read_frame(id, frame).map_err(|error| error.to_string()),
                     files: Vec::new(),
                     hash: String::new(),
                 };
@@ -42,7 +47,8 @@ impl SceneSource {
             Self::File(path) => path.to_string_lossy(),
         };
         let disk = RecordingDisk::default();
-        let desc = scene_file::load_from(&disk, &path).map_err(|error| error.to_string());
+        let desc = scene_file::load_frame_from(&disk, &path, frame);
+        let desc = desc.map_err(|error| error.to_string());
         let (files, hash) = disk.0.into_inner();
         Read { desc, files, hash }
     }

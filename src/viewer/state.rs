@@ -30,6 +30,9 @@ pub struct State {
     lightscope: u32,
     version: String,
     scene: SavedScene,
+    /// Which frame of a sequence.
+    #[serde(default, skip_serializing_if = "is_first")]
+    frame: u32,
     camera: SavedCamera,
     size: [u32; 2],
     integrator: String,
@@ -105,6 +108,7 @@ impl State {
             lightscope: FORMAT,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scene: SavedScene::new(&model.source, scene_hash),
+            frame: 0,
             camera: SavedCamera::new(&model.view),
             size: size.to_array(),
             integrator: settings.integrator.id.to_owned(),
@@ -116,6 +120,16 @@ impl State {
             seed: settings.seed,
             passes,
         }
+    }
+
+    /// The same of a frame of a sequence.
+    pub fn of_frame(self, frame: u32) -> Self {
+        Self { frame, ..self }
+    }
+
+    /// Which frame of a sequence; of stills the only one, 0.
+    pub fn frame(&self) -> u32 {
+        self.frame
     }
 
     /// As it is written.
@@ -217,6 +231,10 @@ impl State {
             seed: self.seed,
         })
     }
+}
+
+fn is_first(frame: &u32) -> bool {
+    *frame == 0
 }
 
 impl SavedScene {

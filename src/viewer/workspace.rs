@@ -21,12 +21,15 @@ use super::notices::Notices;
 use super::opening::Opening;
 use super::photons::Photons;
 use super::preferences::Preferences;
+use super::sequence::Sequence;
 use super::source::SceneSource;
 use super::thumbnails::Thumbnail;
 use crate::engine::film::{Frame, ToneMap};
-use crate::engine::path::Expression;
+use crate::engine::path::{Expression, PathClasses};
 use crate::engine::scene::Scene;
 
+/// All light that a medium scatters.
+pub const VOLUME: &str = "L.*V.*E";
 /// Largest magnification: a pixel is then larger than its numbers.
 const MAX_ZOOM: f32 = 256.0;
 
@@ -41,6 +44,8 @@ pub enum Request {
     SaveAs(PathBuf),
     /// Read the scene again.
     Reload,
+    /// Read a frame of the sequence.
+    Frame(u32),
     /// Save under a new name.
     Save(Format),
     /// Save the plot of errors under a new name that ends so: png, svg or csv.
@@ -118,6 +123,8 @@ pub struct Workspace {
     pub flying: Vec<egui::Key>,
     /// The render stands still.
     pub paused: bool,
+    /// Which frame of a sequence is shown.
+    pub sequence: Sequence,
     /// How the picture lies in its area.
     pub placement: Placement,
     /// The help overlay is shown.
@@ -165,6 +172,7 @@ impl Workspace {
             hold: None,
             flying: Vec::new(),
             paused: false,
+            sequence: Sequence::default(),
             placement: Placement::default(),
             help: false,
             gallery: false,
@@ -192,6 +200,10 @@ impl Workspace {
         }
         self.model.home = scene.camera;
         self.model.source = opening.source;
+        if !again {
+            self.sequence = Sequence::default();
+        }
+        self.sequence.show(opening.frame, self.frame_number);
         self.scene = Some(scene);
         self.scene_hash = hash;
         if let Some(path) = self.model.source.path() {
@@ -255,6 +267,34 @@ impl Workspace {
     pub fn show_expression(&mut self, number: Option<usize>) {
         let shown = number.and_then(|i| u8::try_from(i).ok());
         self.model.display.shown = shown.map_or(Shown::Whole, Shown::Expression);
+    }
+
+    /// Shows the light that a medium scatters alone, or the whole.
+    fn toggle_volume(&mut self) {
+        if !self.scene.as_ref().is_some_and(|s| s.features.volume) {
+            self.notices
+                .say("Nothing in this scene scatters light in a volume.");
+            return;
+        }
+        if self.shows_volume() {
+            return self.show_expression(None);
+        }
+        let Ok(volume) = VOLUME.parse::<Expression>() else {
+            return;
+        };
+        let mut all = self.model.settings.layers.expressions.clone();
+        all.push(volume.clone());
+        match PathClasses::with_components(&all) {
+            Ok(_) => self.add_expression(volume),
+            Err(error) => self.notices.say(format!("{}.", error.message)),
+        }
+    }
+
+    /// Whether the light that a medium scatters is shown alone.
+    pub fn shows_volume(&self) -> bool {
+        let list = &self.model.settings.layers.expressions;
+        let at = list.iter().position(|e| e.text() == VOLUME);
+        at.is_some_and(|i| self.model.display.shown == Shown::Expression(i as u8))
     }
 
     /// Takes an expression's layer away.
@@ -364,6 +404,7 @@ impl Workspace {
             Command::Quit => self.requests.push(Request::Quit),
             Command::Undo => self.history.undo(&mut self.model),
             Command::Redo => self.history.redo(&mut self.model),
+            Command::Volume => self.toggle_volume(),
             Command::Home => self.model.view = self.model.home,
             Command::Pause => self.paused = !self.paused,
             Command::ErrorPlot => self.measuring.large = !self.measuring.large,

@@ -43,7 +43,7 @@ pub fn workspace() -> Workspace {
     workspace
 }
 
-/// The window's contents, tall enough that nothing need be scrolled.
+/// That of [`workspace`].
 pub fn desk() -> Desk {
     desk_of(workspace())
 }
@@ -59,7 +59,8 @@ pub fn desk_with_section(section: &str) -> Desk {
     desk_of(workspace)
 }
 
-fn desk_of(workspace: Workspace) -> Desk {
+/// The window's contents, tall enough that nothing need be scrolled.
+pub fn desk_of(workspace: Workspace) -> Desk {
     Harness::builder()
         .with_size(egui::Vec2::new(1000.0, 1400.0))
         .with_context_setup(panels::apply_style)

@@ -112,6 +112,7 @@ fn a_state_restores_all_that_makes_the_picture() {
     let scene = workspace.scene.clone().expect("a scene");
     let opening = Opening {
         source: saved.source(None),
+        frame: saved.frame(),
         state: Some(Box::new(saved)),
     };
     let hash = workspace.scene_hash.clone();

@@ -7,4 +7,5 @@ mod expressions;
 mod files;
 mod hand;
 mod measuring;
+mod media;
 mod photons;

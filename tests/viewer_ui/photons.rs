@@ -90,7 +90,7 @@ fn the_maps_are_drawn_alone_and_together() {
     for (label, drawn, count) in [
         ("Of the caustic map", Drawn::Caustic, caustic),
         ("Of the global map", Drawn::Global, global),
-        ("Of both maps", Drawn::Both, caustic + global),
+        ("Of all maps", Drawn::All, caustic + global),
     ] {
         desk.get_by_label(label).click();
         desk.run();
@@ -114,7 +114,7 @@ fn the_maps_are_drawn_alone_and_together() {
 #[test]
 fn colours_tell_direction_and_class() {
     let mut desk = photon_desk();
-    desk.get_by_label("Of both maps").click();
+    desk.get_by_label("Of all maps").click();
     desk.run();
     for (label, by) in [("direction", ColorBy::Direction), ("class", ColorBy::Class)] {
         desk.get_by_label("Photon colour").click();

@@ -55,6 +55,7 @@ impl Scene {
         Ok(Self {
             name: desc.name.clone(),
             description: desc.description.clone(),
+            frames: desc.frames,
             camera: desc.camera,
             geometry,
             materials,

@@ -14,6 +14,8 @@ pub struct Scene {
     pub name: String,
     /// One line: what the scene shows.
     pub description: String,
+    /// Number of frames, if it is one of a sequence.
+    pub frames: Option<u32>,
     /// The view to open with.
     pub camera: CameraDesc,
     /// Surfaces.

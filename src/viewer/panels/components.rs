@@ -5,13 +5,18 @@ use egui::{RichText, Ui};
 use crate::engine::path::COMPONENTS;
 use crate::viewer::commands::{Command, binding};
 use crate::viewer::display::{PARTS, Shown};
-use crate::viewer::workspace::Workspace;
+use crate::viewer::workspace::{VOLUME, Workspace};
 
 /// Draws the switches, the solo buttons and the badge.
 pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     egui::Grid::new("components").num_columns(2).show(ui, |ui| {
         for part in 0..PARTS {
             component(ui, workspace, part);
+            ui.end_row();
+        }
+        let scene = workspace.scene.as_ref();
+        if scene.is_some_and(|s| s.features.volume) {
+            volume(ui, workspace);
             ui.end_row();
         }
     });
@@ -47,6 +52,17 @@ fn component(ui: &mut Ui, workspace: &mut Workspace, part: usize) {
     if is_empty(workspace, part) {
         ui.label(RichText::new("empty").weak())
             .on_hover_text("No path of this scene belongs to this component.");
+    }
+}
+
+/// The light of media, which is part of all four.
+fn volume(ui: &mut Ui, workspace: &mut Workspace) {
+    let line = binding(Command::Volume);
+    ui.label("of these");
+    let solo = ui.selectable_label(workspace.shows_volume(), "only volume");
+    let doc = format!("{} Path expression {VOLUME}.", line.tooltip());
+    if solo.on_hover_text(doc).clicked() {
+        workspace.run(Command::Volume);
     }
 }
 

@@ -32,6 +32,7 @@ mod widgets;
 use egui::{CentralPanel, Panel, ScrollArea, Ui};
 
 use super::commands;
+use super::sequence;
 use super::workspace::{Request, Workspace};
 
 pub use style::apply as apply_style;
@@ -86,6 +87,9 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         workspace.preferences.panel_width = panel.response.rect.width();
     }
     photons::keep_up(ui, workspace);
+    if let Some(seconds) = sequence::play(workspace, now) {
+        ui.ctx().request_repaint_after_secs(seconds as f32);
+    }
     CentralPanel::no_frame().show(ui, |ui| picture::show(ui, workspace));
     error_plot::large(ui, workspace);
     notices::show(ui, workspace);

@@ -19,6 +19,7 @@ const NEAR: f32 = 1e-4;
 
 const CAUSTIC: Color32 = Color32::from_rgb(255, 170, 60);
 const GLOBAL: Color32 = Color32::from_rgb(90, 180, 255);
+const VOLUME: Color32 = Color32::from_rgb(150, 220, 210);
 const WAY: Color32 = Color32::from_rgb(250, 230, 120);
 const RAY: Color32 = Color32::from_rgb(120, 220, 140);
 const RECORD: Color32 = Color32::from_rgb(220, 130, 220);
@@ -236,6 +237,7 @@ impl Pen {
 pub fn color_of(kind: MapKind) -> Color32 {
     match kind {
         MapKind::Caustic => CAUSTIC,
-        MapKind::Global | MapKind::Volume => GLOBAL,
+        MapKind::Global => GLOBAL,
+        MapKind::Volume => VOLUME,
     }
 }

@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
         offer(ui, workspace);
         return;
     };
-    points(ui, &mut workspace.photons);
+    points(ui, &mut workspace.photons, &view);
     lines(ui, &mut workspace.photons.choice, &view);
     ui.checkbox(&mut workspace.photons.choice.asks, "Ask by a click")
         .on_hover_text(
@@ -72,7 +72,7 @@ fn offer(ui: &mut Ui, workspace: &mut Workspace) {
     }
 }
 
-fn points(ui: &mut Ui, photons: &mut Photons) {
+fn points(ui: &mut Ui, photons: &mut Photons, view: &PhotonView) {
     let choice = &mut photons.choice;
     ui.horizontal_wrapped(|ui| {
         for (drawn, label, doc) in [
@@ -83,8 +83,16 @@ fn points(ui: &mut Ui, photons: &mut Photons) {
                 "Photons that mirrors, glass or gloss threw onto diffuse surfaces.",
             ),
             (Drawn::Global, "Of the global map", "All other photons."),
-            (Drawn::Both, "Of both maps", "Those of both maps."),
+            (
+                Drawn::Volume,
+                "Of the volume map",
+                "Photons where a medium scatters light.",
+            ),
+            (Drawn::All, "Of all maps", "Those of all maps."),
         ] {
+            if drawn == Drawn::Volume && view.map(MapKind::Volume).is_none() {
+                continue;
+            }
             ui.selectable_value(&mut choice.drawn, drawn, label)
                 .on_hover_text(doc);
         }

@@ -258,6 +258,12 @@ impl Integrator for PhotonMapper {
             let mut named = vec![("caustic map", &maps.caustic), ("global map", &maps.global)];
             if maps.volume.is_some() {
                 named.push(("volume map", &maps.volume));
+                if self.settings.indirect != Indirect::Direct {
+                    facts.push(Fact {
+                        label: "indirect light",
+                        value: "from the global map directly: gather rays know no media".to_owned(),
+                    });
+                }
             }
             facts.extend(named.into_iter().map(|(label, map)| {
                 Fact {
