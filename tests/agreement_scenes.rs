@@ -107,6 +107,47 @@ fn integrators_agree_in_small_vcms_scenes() {
     check(&["vcm-sun", "vcm-ceiling", "vcm-point", "vcm-environment"]);
 }
 
+/// Those that hold media: also what a medium scatters, and photons stored in it. Light that milk
+/// scatters more than sixteen times is left out: walks from both ends would be joined at all pairs
+/// of hundreds of places.
+#[test]
+fn integrators_agree_in_media() {
+    let words = ["L(D|G|V).*E", "L.*(D|V)E"];
+    let photons = [
+        ("caustic-photons", "10000"),
+        ("global-photons", "10000"),
+        ("volume-photons", "20000"),
+    ];
+    for (id, depth) in [
+        ("fog-spot", None),
+        ("glass-volume-caustic", None),
+        ("smoke", None),
+        ("milk", Some(16)),
+    ] {
+        let scene = scene(id);
+        let run = |id: &str, set: &[(&str, &str)], passes| {
+            let mut job: RenderJob = job(&scene, id, set);
+            job.size = SIZE;
+            job.settings.layers.max_depth = depth;
+            job.settings.layers.expressions = words.map(|w| w.parse().expect("well-formed")).into();
+            let start = std::time::Instant::now();
+            let frames = runs_of(job, passes);
+            println!("{id}: {:.1} s", start.elapsed().as_secs_f64());
+            frames
+        };
+        let (path, bdpt) = (run("path", &[], 512), run("bdpt", &[], 64));
+        assert_agree(&format!("bdpt in {id}"), &bdpt, &path, &[FROM_LIGHT]);
+        let light = run("light", &[], 128);
+        assert_agree(&format!("light in {id}"), &light, &bdpt, &[TO_EYE]);
+        let chains = run("pssmlt", &[("chains", "32"), ("bootstrap", "4096")], 32);
+        assert_same_mean(&format!("pssmlt in {id}"), &chains, &path, 0.0);
+        let vcm = run("vcm", &[], 12);
+        assert_same_mean(&format!("vcm in {id}"), &vcm, &path, 0.01);
+        let photon = run("photon", &photons, 4);
+        assert_same_mean(&format!("photon in {id}"), &photon, &path, 0.03);
+    }
+}
+
 /// No scene is left out.
 #[test]
 fn every_embedded_scene_is_compared() {
