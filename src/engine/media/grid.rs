@@ -66,25 +66,36 @@ impl Grid {
     /// none does.
     #[inline]
     pub fn clip(&self, ray: &Ray, span: (f32, f32)) -> (f32, f32) {
-        let (mut begin, mut end) = span;
-        for axis in 0..3 {
-            let (o, d) = (ray.o[axis], ray.d[axis]);
-            let (low, high) = (self.bounds.min[axis], self.bounds.max[axis]);
-            if d == 0.0 {
-                if o < low || o > high {
-                    return (1.0, 0.0);
-                }
-                continue;
-            }
-            let (a, b) = ((low - o) / d, (high - o) / d);
-            begin = begin.max(a.min(b));
-            end = end.min(a.max(b));
-        }
-        (begin, end)
+        clip(&self.bounds, ray, span)
+    }
+
+    /// The box.
+    pub fn bounds(&self) -> Bounds3 {
+        self.bounds
     }
 
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(&*self.data.values) + self.majorants.memory_bytes()
     }
+}
+
+/// The part of `span` of the ray that lies in a box; the first is not below the second if none does.
+#[inline]
+pub fn clip(bounds: &Bounds3, ray: &Ray, span: (f32, f32)) -> (f32, f32) {
+    let (mut begin, mut end) = span;
+    for axis in 0..3 {
+        let (o, d) = (ray.o[axis], ray.d[axis]);
+        let (low, high) = (bounds.min[axis], bounds.max[axis]);
+        if d == 0.0 {
+            if o < low || o > high {
+                return (1.0, 0.0);
+            }
+            continue;
+        }
+        let (a, b) = ((low - o) / d, (high - o) / d);
+        begin = begin.max(a.min(b));
+        end = end.min(a.max(b));
+    }
+    (begin, end)
 }

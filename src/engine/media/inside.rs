@@ -2,6 +2,7 @@
 
 use glam::Vec3A;
 
+use super::glow::Glow;
 use super::medium::Medium;
 use crate::engine::geometry::{Bounds3, Geometry, Ray, SurfaceInteraction};
 use crate::engine::scene::desc::media::{MediaDesc, SurfaceDesc};
@@ -62,6 +63,8 @@ pub struct Media {
     everywhere: Option<u16>,
     /// Where a medium everywhere ends if light comes from infinity.
     ball: Option<(Vec3A, f32)>,
+    /// How those that emit are found.
+    pub glow: Glow,
 }
 
 impl Media {
@@ -128,7 +131,12 @@ impl Media {
             });
         }
         let ball = (everywhere.is_some() && light_at_infinity).then(|| geometry.bounding_sphere());
+        let placed = regions
+            .iter()
+            .filter_map(|r| Some((&media[usize::from(r.medium?)], r.bounds)));
+        let glow = Glow::new(placed);
         Ok(Self {
+            glow,
             media,
             regions,
             by_prim,

@@ -63,6 +63,46 @@ impl Majorants {
         }
     }
 
+    /// One cell with a value.
+    pub fn uniform(bounds: Bounds3, value: f32) -> Self {
+        Self {
+            size: [1; 3],
+            values: vec![value],
+            min: bounds.min,
+            cell: bounds.max - bounds.min,
+        }
+    }
+
+    /// The same cells with their values times `factor`.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut scaled = self.clone();
+        scaled.values.iter_mut().for_each(|v| *v *= factor);
+        scaled
+    }
+
+    /// The values: x fastest, then y, then z.
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// To be changed.
+    pub fn values_mut(&mut self) -> &mut [f32] {
+        &mut self.values
+    }
+
+    /// Volume of a cell in units of `unit`³.
+    pub fn cell_volume(&self, unit: f64) -> f64 {
+        let side = self.cell.as_dvec3() / unit;
+        side.x * side.y * side.z
+    }
+
+    /// A place in the cell of number `index`, uniform if `u` is in the unit cube.
+    pub fn place(&self, index: usize, u: Vec3A) -> Vec3A {
+        let [nx, ny, _] = self.size;
+        let (i, j, k) = (index % nx, index / nx % ny, index / (nx * ny));
+        self.min + (Vec3A::new(i as f32, j as f32, k as f32) + u) * self.cell
+    }
+
     /// The cells along `span` of the ray, in order: where each begins and ends, and its bound.
     #[inline]
     pub fn walk(&self, ray: &Ray, span: (f32, f32)) -> CellWalk<'_> {

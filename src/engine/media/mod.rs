@@ -8,6 +8,7 @@
 //! stands in the albedo alone; no weight of a tracked distance exceeds the sum of the throughput
 //! that it began with.
 
+mod glow;
 mod grid;
 mod inside;
 mod majorant;
@@ -15,6 +16,7 @@ mod medium;
 pub mod phase;
 pub mod tracking;
 
+pub use glow::Glow;
 pub use inside::{Inside, Media, Region};
 pub use medium::Medium;
 pub use phase::Phase;

@@ -9,6 +9,7 @@
 
 mod direct;
 mod equiangular;
+mod glow;
 mod volume;
 mod walk;
 

@@ -9,6 +9,7 @@
 use glam::{Vec2, Vec3A};
 
 use super::equiangular::Equiangular;
+use super::glow;
 use super::walk::{MAX_EVENTS, Walk};
 use super::{Mode, PathTracer, turned};
 use crate::engine::bsdf::{Bsdf, Transport};
@@ -161,7 +162,12 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         // The next event, and light of the media on the way.
         let (mut draws, flight, part) = self.fly(lights_volumes);
         if !flight.emitted.is_black() {
-            let value = self.walk.throughput * flight.emitted;
+            let share = if self.looks_for_glow() {
+                glow::met_share(self.cx, &self.walk, self.ray.d)
+            } else {
+                1.0
+            };
+            let value = self.walk.throughput * flight.emitted * share;
             self.out.add(self.walk.suffix, value);
         }
 
@@ -198,6 +204,11 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
                 if lights_volumes {
                     let part = part.filter(|p| p.number == flight.spans);
                     self.light_volume(point, volume_class, part.as_ref(), flight.t, &mut shadow);
+                }
+                if self.looks_for_glow() && plan.is_wanted(volume_class) {
+                    let inside = &self.inside;
+                    let found = glow::at_volume(self.cx, &self.walk, point, inside, &mut shadow);
+                    self.out.add(volume_class, found);
                 }
                 if G::ENDS {
                     self.gather.at_volume(&self.walk, point, self.out);
@@ -288,6 +299,11 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         range.map(move |id| (id, pmf, if one { u } else { turned(u, id as usize) }))
     }
 
+    /// Whether shadow rays look for light of media. Gathering does not: it has no photons of theirs.
+    fn looks_for_glow(&self) -> bool {
+        !G::ENDS && self.tracer.mode == Mode::Mis && !self.cx.scene.media.glow.is_empty()
+    }
+
     fn sample_light(&self, id: u32, p: Vec3A, u: Vec2) -> Option<LightSample> {
         self.cx.scene.lights.get(id).sample_li(p, u)
     }
@@ -309,6 +325,10 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
                     self.light_surface(si, &bsdf, inside, &light, pmf, shadow);
                 }
             }
+        }
+        if self.looks_for_glow() && bsdf.has_non_delta() {
+            let place = (si, &bsdf, inside);
+            glow::at_surface(self.cx, &self.walk, place, shadow, self.out);
         }
         if G::ENDS && bsdf.has(Event::Diffuse) {
             self.gather.at_surface(&self.walk, si, &bsdf, self.out);

@@ -84,6 +84,13 @@ impl Walk {
         }
     }
 
+    /// Where the last event happened and the density of its direction in 1/sr, if a shadow ray from
+    /// there might have gone the same way.
+    pub(super) fn last_found(&self) -> Option<(Vec3A, f32)> {
+        let last = self.last.as_ref().filter(|last| !last.event.is_delta());
+        last.map(|last| (last.p, last.pdf_dir))
+    }
+
     /// Russian roulette after `from` events with the random number `u`; false if the walk ends.
     /// Survival divides the throughput and enters no weight.
     pub fn survives(&mut self, from: u32, u: f32, stats: &mut RenderStats) -> bool {
