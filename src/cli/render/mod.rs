@@ -40,10 +40,10 @@ pub fn run(args: RenderArgs) -> Result<(), CliError> {
 /// Renders one frame; a still has one.
 fn picture_of(args: &RenderArgs, frame: u32, cancel: &Cancel) -> Result<(), CliError> {
     let options = RenderOptions::new(args)?;
-    if let Some(most) = args.pyramid {
-        return pyramid::run(args, &options, most);
-    }
     refuse_to_overwrite_inputs(args)?;
+    if let Some(most) = args.pyramid {
+        return pyramid::run(args, &options, (frame, most), cancel);
+    }
     let desc = scene::read_frame(&args.scene, frame)?;
     let size = options
         .size

@@ -28,9 +28,9 @@ pub fn run(args: &RenderArgs, frames: &str) -> Result<(), CliError> {
              smoke-##.png"
         )));
     }
-    if args.log.is_some() || args.reference.is_some() {
+    if args.log.is_some() || args.reference.is_some() || args.json {
         return Err(CliError::usage(
-            "--log and --reference go with one picture, not with --frames",
+            "--log, --reference and --json go with one picture, not with --frames",
         ));
     }
     let cancel = super::cancel_on_interrupt()?;
