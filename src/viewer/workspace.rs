@@ -381,6 +381,10 @@ impl Workspace {
             return;
         }
         self.notices.clear_error("render");
+        // Between two frames of a sequence the last one is the better picture.
+        if self.sequence.plays && frame.is_coarse() && !self.navigating {
+            return;
+        }
         self.balance = Balance::of_components(&frame);
         self.typed_balance = Balance::of_expressions(&frame);
         self.frame = Some(frame);
