@@ -15,6 +15,7 @@ mod picture;
 mod print;
 mod reference;
 mod render;
+mod replay;
 mod report;
 mod scene;
 mod suggest;
@@ -59,6 +60,7 @@ fn run(cli: Cli) -> Result<(), CliError> {
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Report(args)) => report::run(&args),
         Some(Command::Reference(args)) => reference::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args.what),
