@@ -22,7 +22,7 @@ use crate::engine::session::{RenderJob, Renderer, Settings};
 /// Runs the command.
 pub fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let (integrator, params) = scene::parameters(&args.integrator, &args.set)?;
-    let sample = SampleId::parse(&args.stream, &args.index).map_err(CliError::Usage)?;
+    let sample = sample(args)?;
     let layers = LayerSettings {
         expressions: expressions(&args.expression)?,
         components: true,
@@ -65,6 +65,11 @@ pub fn run(args: &ReplayArgs) -> Result<(), CliError> {
     } else {
         print_text(&job, &sample, &recording, &naming)
     }
+}
+
+/// The sample that the arguments name.
+pub fn sample(args: &ReplayArgs) -> Result<SampleId, CliError> {
+    SampleId::parse(&args.stream, &args.index).map_err(CliError::Usage)
 }
 
 /// What is wrong with the light that the sample brought.

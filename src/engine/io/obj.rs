@@ -20,6 +20,9 @@ use crate::engine::geometry::MAX_COORDINATE;
 use crate::engine::math::Rgb;
 use crate::engine::scene::desc::{CameraDesc, LightDesc, MeshDesc, NamedMaterial, SceneDesc};
 
+/// Most names of unknown materials that are told: each is compared with all that are known.
+const MOST_TOLD: usize = 100;
+
 /// What an OBJ file holds.
 #[derive(Clone, Debug, Default)]
 pub struct ObjFile {
@@ -129,7 +132,7 @@ fn warn_of_unknown_names(
             continue;
         };
         let known = materials.iter().any(|m| m.name == name);
-        if !known && told.insert(name.to_owned()) {
+        if !known && told.len() < MOST_TOLD && told.insert(name.to_owned()) {
             let names = materials.iter().map(|m| m.name.as_str());
             let hint = did_you_mean(name, names);
             let line = number + 1;

@@ -41,7 +41,7 @@ impl Scene {
     #[inline]
     pub fn ray_fault(&self, left: Departure, si: Option<&SurfaceInteraction>) -> Option<RayFault> {
         match si {
-            Some(si) if si.prim != left.prim => None,
+            Some(si) if si.prim != left.prim || si.is_in_volume() => None,
             Some(si) => self.geometry.self_hit(left, si),
             // A ray may leave by a surface that lets it pass.
             None if self.features.opacity => None,
