@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use lightscope::engine::io::image::{self, Encoding};
+use lightscope::engine::io::scene_file;
 
 use super::allocator::peak_of;
 use super::corpus::Files;
@@ -81,6 +82,11 @@ fn a_claim_of_many_pixels_takes_no_memory() {
     let crc = crc32(&head);
     png.extend(&head);
     png.extend(crc.to_be_bytes());
+    // Some bytes of a picture, so that its head is complete.
+    let data = b"IDAT\x78\x9c\x03\x00";
+    png.extend(4_u32.to_be_bytes());
+    png.extend(data);
+    png.extend(crc32(data).to_be_bytes());
     let hdr = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16000 +X 16000\n\x02\x02\x3e\x80".to_vec();
     for (name, bytes) in [("png", png), ("hdr", hdr)] {
         let files = Files {
@@ -105,6 +111,46 @@ fn crc32(bytes: &[u8]) -> u32 {
         })
     };
     !bytes.iter().fold(u32::MAX, step)
+}
+
+/// tobj takes three numbers for granted.
+#[test]
+fn a_colour_of_two_numbers_is_refused() {
+    for statement in ["Kd 0.8 0", "Ks", "Ke 1 1", "Ka 1"] {
+        let text = format!("newmtl red\nNs 3\n{statement}\n");
+        let files = Files {
+            changed: "scenes/all.mtl",
+            bytes: text.as_bytes(),
+        };
+        let error = scene_file::load_from(&files, "scenes/all.obj").expect_err("refused");
+        assert_eq!(error.line, Some(3), "{statement}: {error}");
+    }
+}
+
+/// tobj multiplies indices that point before the first vertex, or far beyond the last.
+#[test]
+fn wild_indices_are_refused() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
+    for face in [
+        "f -4 2 3",
+        "f 1/-2 2/1 3/1",
+        "f 1//-2 2//1 3//1",
+        "f 1//6148914691236517206 2//1 3//1",
+    ] {
+        let text = format!("{vertices}{face}\n");
+        let files = Files {
+            changed: "a.obj",
+            bytes: text.as_bytes(),
+        };
+        let error = scene_file::load_from(&files, "a.obj").expect_err("refused");
+        assert_eq!(error.line, Some(6), "{face}: {error}");
+    }
+    let good = format!("{vertices}f -3/-1/-1 -2/-1/-1 -1/-1/-1\n");
+    let files = Files {
+        changed: "a.obj",
+        bytes: good.as_bytes(),
+    };
+    scene_file::load_from(&files, "a.obj").expect("relative indices are allowed");
 }
 
 /// A name of a megabyte is compared with the names there are.
