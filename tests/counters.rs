@@ -73,8 +73,9 @@ fn what_overflows_is_counted_kept_and_named() {
             4.min(stats.errors().iter().sum::<u64>()) as usize,
             "{id}"
         );
+        // Where every sample was left out there is no mean; nowhere is it infinite.
         let values = frame.layers[0].pixels.iter().flatten();
-        assert!(values.into_iter().all(|x| x.is_finite()), "{id}");
+        assert!(values.into_iter().all(|x| !x.is_infinite()), "{id}");
     }
 }
 

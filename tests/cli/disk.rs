@@ -151,7 +151,7 @@ fn what_must_not_be_read_is_named() {
     succeeds(at, &["info", "a.toml"]);
     let forbid = |name: &str| {
         let path = at.join(name);
-        fs::set_permissions(&path, fs::Permissions::from_mode(0)).expect("rights");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o000)).expect("rights");
         // The administrator may read everything.
         fs::read(&path).is_err()
     };

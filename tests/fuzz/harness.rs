@@ -40,7 +40,8 @@ impl Target {
             watch.look_at(input);
             self.try_input(input, u64::MAX);
         }
-        let (mut largest, started) = (0.0_f64, Instant::now());
+        let (mut most, mut share) = (0, 0.0_f64);
+        let started = Instant::now();
         for number in 0..count {
             let mut numbers = Numbers::new(self.name, number);
             let input = mutated(&self.corpus, self.words, &mut numbers);
@@ -50,12 +51,13 @@ impl Target {
             watch.look_at(&input);
             let peak = self.try_input(&input, number);
             let beyond = peak.saturating_sub(self.memory.0);
-            largest = largest.max(beyond as f64 / input.len().max(1) as f64);
+            share = share.max(beyond as f64 / input.len().max(1) as f64);
+            most = most.max(peak);
         }
         let seconds = started.elapsed().as_secs_f64();
         println!(
-            "{}: {count} inputs in {seconds:.1} s; beyond the first {} bytes at most {largest:.0} \
-             bytes of memory a byte of input",
+            "{}: {count} inputs in {seconds:.1} s; at most {most} bytes of memory, beyond the first {} \
+             {share:.0} a byte of input",
             self.name, self.memory.0
         );
     }

@@ -54,8 +54,6 @@ fn prepare(desc: &SceneDesc) {
     if scene.features.media {
         return;
     }
-    let entry = integrators::find("path").expect("path tracing");
-    let mut integrator = (entry.build)(&Params::defaults(entry.params));
     let pass = Pass {
         scene: &scene,
         camera: &camera,
@@ -64,10 +62,14 @@ fn prepare(desc: &SceneDesc) {
         index: 0,
         cancel: &Cancel::never(),
     };
-    let mut film = Film::new(UVec2::new(2, 2), plan.planned);
-    integrator
-        .render_pass(&pass, &mut film)
-        .expect("nobody cancels");
+    for id in ["path", "bdpt"] {
+        let entry = integrators::find(id).expect("an algorithm");
+        let mut integrator = (entry.build)(&Params::defaults(entry.params));
+        let mut film = Film::new(UVec2::new(2, 2), plan.planned);
+        integrator
+            .render_pass(&pass, &mut film)
+            .expect("nobody cancels");
+    }
 }
 
 const SCENE_WORDS: &[&str] = &[

@@ -43,7 +43,7 @@ pub fn run(args: RenderArgs) -> Result<(), CliError> {
 fn picture_of(args: &RenderArgs, frame: u32, cancel: &Cancel) -> Result<(), CliError> {
     let options = RenderOptions::new(args)?;
     if let Some(most) = args.pyramid {
-        return pyramid::run(args, &options, most);
+        return pyramid::run(args, &options, most, cancel);
     }
     refuse_to_overwrite_inputs(args)?;
     let desc = scene::read_frame(&args.scene, frame)?;

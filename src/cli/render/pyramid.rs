@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::{RenderOptions, cancel_on_interrupt, thread_pool};
+use super::{RenderOptions, thread_pool};
 use crate::cli::args::RenderArgs;
 use crate::cli::error::CliError;
 use crate::cli::picture::Format;
@@ -10,7 +10,7 @@ use crate::cli::print::note;
 use crate::cli::scene;
 use crate::engine::film::tonemap::{NAN_COLOR, tonemap};
 use crate::engine::integrators::pyramid::{TechniqueImage, pyramid, sheet};
-use crate::engine::integrators::{Pass, bdpt};
+use crate::engine::integrators::{Cancel, Pass, bdpt};
 use crate::engine::io::atomic;
 use crate::engine::session::RenderJob;
 use crate::picture::{exr_file, png_file};
@@ -19,7 +19,12 @@ use crate::picture::{exr_file, png_file};
 const PASSES: u64 = 64;
 
 /// Runs the command; `most` is the number of vertices of the longest paths.
-pub fn run(args: &RenderArgs, options: &RenderOptions, most: u64) -> Result<(), CliError> {
+pub fn run(
+    args: &RenderArgs,
+    options: &RenderOptions,
+    most: u64,
+    cancel: &Cancel,
+) -> Result<(), CliError> {
     if options.settings.integrator.id != bdpt::ENTRY.id {
         return Err(CliError::usage(
             "--pyramid shows the strategies of bidirectional path tracing; add --integrator bdpt",
@@ -46,14 +51,13 @@ pub fn run(args: &RenderArgs, options: &RenderOptions, most: u64) -> Result<(), 
         navigating: false,
     };
     let plan = scene::plan(&job)?;
-    let cancel = cancel_on_interrupt()?;
     let pass = Pass {
         scene: &job.scene,
         camera: &job.camera,
         plan: &plan,
         seed: job.settings.seed,
         index: 0,
-        cancel: &cancel,
+        cancel,
     };
     let passes = args.spp.unwrap_or(PASSES);
     let pool = thread_pool(options.threads)?;
