@@ -94,11 +94,14 @@ fn keep(name: &str, input: &[u8]) -> PathBuf {
 }
 
 /// Ends the process if an input takes too long: there is no other way out of a loop.
-struct Watch(Arc<Mutex<Option<(Instant, Vec<u8>)>>>);
+struct Watch(Arc<Mutex<Option<Tried>>>);
+
+/// Since when an input is tried.
+type Tried = (Instant, Vec<u8>);
 
 impl Watch {
     fn start(name: &'static str) -> Self {
-        let current = Arc::new(Mutex::new(None::<(Instant, Vec<u8>)>));
+        let current = Arc::new(Mutex::new(None::<Tried>));
         let watched = Arc::downgrade(&current);
         std::thread::spawn(move || {
             while let Some(current) = watched.upgrade() {

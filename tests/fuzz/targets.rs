@@ -1,6 +1,8 @@
 //! The readers of everything that a user may give.
 
+#[cfg(feature = "viewer")]
 use std::fs;
+#[cfg(feature = "viewer")]
 use std::path::PathBuf;
 
 use glam::UVec2;
@@ -312,6 +314,7 @@ fn expressions() {
 }
 
 /// A file of this process and target.
+#[cfg(feature = "viewer")]
 fn scratch(name: &str, bytes: &[u8]) -> PathBuf {
     let memory = PathBuf::from("/dev/shm");
     let folder = if memory.is_dir() {

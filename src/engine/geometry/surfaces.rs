@@ -225,7 +225,8 @@ impl Geometry {
     }
 
     /// Whether a ray that left at `left` and met nothing had to meet something: it went into what
-    /// a closed surface encloses. Meshes of more than [`closed::MOST_TRIANGLES`] are not looked at.
+    /// a closed surface encloses. Scenes of very many triangles are not
+    /// looked at (`closed::MOST_TRIANGLES`).
     #[cold]
     pub fn missed_edge(&self, left: Departure) -> Option<RayFault> {
         let enclosed = match self.sphere(left.prim) {
