@@ -4,7 +4,7 @@
 
 pub mod cli;
 pub mod engine;
-mod picture;
+pub mod picture;
 mod plot;
 #[cfg(feature = "viewer")]
 pub mod viewer;

@@ -61,7 +61,7 @@ fn runs(scene: &str, set: &[(&str, &str)], passes: u64) -> (Vec<Frame>, usize) {
     let frames = (0..RUNS).map(|seed| {
         job.settings.seed = seed;
         let frame = render(&job, passes);
-        assert_eq!(frame.stats.non_finite, 0);
+        assert_eq!(frame.stats.non_finite(), 0);
         frame
     });
     (frames.collect(), width)

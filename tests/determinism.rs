@@ -10,8 +10,9 @@ use glam::UVec2;
 use lightscope::engine::camera::Camera;
 use lightscope::engine::film::{Film, Frame, SampleRadiance};
 use lightscope::engine::geometry::Ray;
+use lightscope::engine::integrators::replay::RadianceSink;
 use lightscope::engine::integrators::tiled::{RayIntegrator, SamplerKind, Tiled};
-use lightscope::engine::integrators::{Cancel, Integrator, Pass, REGISTRY, RenderStats};
+use lightscope::engine::integrators::{Cancel, Integrator, Pass, REGISTRY, RenderStats, SampleId};
 use lightscope::engine::math::Rgb;
 use lightscope::engine::path::ClassId;
 use lightscope::engine::plan::RenderPlan;
@@ -116,7 +117,7 @@ impl RayIntegrator for Faulty {
         _: &Pass<'_>,
         _: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         _: &mut RenderStats,
     ) {
         let value = match sampler.next_1d() {
@@ -155,15 +156,22 @@ fn samples_that_are_not_finite_are_counted_and_can_be_computed_again() {
     }
 
     // A fifth is counted and left out; the mean of the others is exact.
-    let share = stats.non_finite as f64 / stats.samples as f64;
+    let share = stats.non_finite() as f64 / stats.samples as f64;
     assert!((share - 0.2).abs() < 0.02, "{share}");
     let mut layers = Vec::new();
     film.resolve(&plan.labels, &mut layers);
     assert!(layers[0].pixels.iter().all(|p| *p == [1.0; 3]));
 
     // The first of them is found again from its pixel and pass alone.
-    let bad = stats.first_non_finite.expect("there are some");
+    let bad = stats.bad_samples().next().expect("there are some");
     let mut out = SampleRadiance::new(&plan.classes, plan.planned);
-    tiled.sample(&pass(bad.pass), bad.pixel, &mut out, &mut stats);
+    let SampleId::Camera {
+        pixel,
+        pass: number,
+    } = bad.id
+    else {
+        panic!("{bad:?}")
+    };
+    tiled.sample(&pass(number), pixel, &mut out, &mut stats);
     assert!(!out.is_finite());
 }

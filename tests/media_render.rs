@@ -36,7 +36,7 @@ fn estimate(scene: &Arc<Scene>, set: &[(&str, &str)], passes: u64) -> (f64, f64)
 /// A render in which nothing went wrong.
 fn sound(job: &RenderJob, passes: u64) -> Frame {
     let frame = render(job, passes);
-    assert_eq!(frame.stats.non_finite, 0);
+    assert_eq!(frame.stats.non_finite(), 0);
     assert_eq!(frame.stats.exceeded_majorants, 0);
     assert_eq!(frame.stats.cut_paths, 0);
     frame

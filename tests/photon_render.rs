@@ -67,7 +67,7 @@ fn agrees_within_its_bias(scene: &str, set: &[(&str, &str)]) {
         .map(|seed| {
             job.settings.seed = seed;
             let frame = render(&job, passes);
-            assert_eq!(frame.stats.non_finite, 0);
+            assert_eq!(frame.stats.non_finite(), 0);
             frame
         })
         .collect();

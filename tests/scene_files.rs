@@ -44,7 +44,7 @@ fn one_pass(scene: &Arc<Scene>) -> Vec<(String, f64)> {
     let mut job = job(scene, "path", &[]);
     job.size = UVec2::new(48, 36);
     let frame = render(&job, 1);
-    assert_eq!(frame.stats.non_finite, 0, "{}: non-finite", scene.name);
+    assert_eq!(frame.stats.non_finite(), 0, "{}: non-finite", scene.name);
     assert_eq!(frame.stats.cut_paths, 0, "{}: cut paths", scene.name);
     let means = frame.layers.iter().map(|layer| {
         let sum: f64 = layer.pixels.iter().flatten().map(|x| f64::from(*x)).sum();

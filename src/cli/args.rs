@@ -1,6 +1,7 @@
 //! Arguments as they are typed.
 
 mod measuring;
+mod replay;
 
 use std::path::PathBuf;
 
@@ -12,6 +13,7 @@ use crate::engine::measure::Region;
 
 use super::suggest::did_you_mean;
 pub use measuring::{ReferenceArgs, ReportArgs};
+pub use replay::ReplayArgs;
 
 /// Renders scenes by global illumination. Without a command it opens the window.
 #[derive(Debug, Parser)]
@@ -35,6 +37,8 @@ pub enum Command {
     Report(ReportArgs),
     /// Render a reference: a picture whose standard error is known pixel by pixel.
     Reference(ReferenceArgs),
+    /// Follow one sample of a render again, step by step.
+    Replay(ReplayArgs),
     /// List what there is to choose from.
     List(ListArgs),
     /// Say what a scene or a picture holds.

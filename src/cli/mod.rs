@@ -15,6 +15,7 @@ mod picture;
 mod print;
 mod reference;
 mod render;
+mod replay;
 mod report;
 mod scene;
 mod suggest;
@@ -59,6 +60,7 @@ fn run(cli: Cli) -> Result<(), CliError> {
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Report(args)) => report::run(&args),
         Some(Command::Reference(args)) => reference::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args.what),
@@ -67,6 +69,27 @@ fn run(cli: Cli) -> Result<(), CliError> {
             window(name.map(check_name).transpose()?)
         }
     }
+}
+
+/// Whether a command line can be understood, `arguments` being what follows the program's name.
+/// Nothing is read, rendered or written.
+///
+/// # Errors
+/// What would be printed.
+pub fn check(arguments: &[String]) -> Result<(), String> {
+    let words = std::iter::once("lightscope").chain(arguments.iter().map(String::as_str));
+    let cli = Cli::try_parse_from(words).map_err(|error| error.to_string())?;
+    let of = |id: &str, sets: &[String], texts: &[String]| {
+        scene::parameters(id, sets)?;
+        render::expressions(texts).map(|_| ())
+    };
+    match &cli.command {
+        Some(Command::Render(args)) => of(&args.integrator, &args.set, &args.expression),
+        Some(Command::Replay(args)) => of(&args.integrator, &args.set, &args.expression)
+            .and_then(|()| replay::sample(args).map(|_| ())),
+        _ => Ok(()),
+    }
+    .map_err(|error| error.to_string())
 }
 
 /// What is wrong with a first word that is neither a command nor a scene; clap would complain of

@@ -13,9 +13,13 @@ use exr::prelude::{
 use glam::UVec2;
 
 use super::{Layer, Picture, WHOLE, labels};
+use crate::engine::io::image;
 
 /// The bytes of a file. The same pictures give the same bytes, lines being stored in order, but for
 /// the order of the texts, which the library keeps in a hash map.
+///
+/// # Errors
+/// If a layer has no name, or another number of pixels.
 pub fn encode(
     size: UVec2,
     layers: &[(&str, &[[f32; 3]])],
@@ -55,14 +59,26 @@ fn channel_name(label: &str, letter: &str) -> String {
 }
 
 /// Reads the first part of a file.
+///
+/// # Errors
+/// If it cannot be read, or is no such file.
 pub fn read(path: &Path) -> Result<Picture, Error> {
+    decode(&std::fs::read(path)?)
+}
+
+/// Reads the first part of the bytes of a file.
+///
+/// # Errors
+/// If they are no such file.
+pub fn decode(bytes: &[u8]) -> Result<Picture, Error> {
+    image::check_exr(bytes).map_err(|message| Error::Invalid(message.into()))?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
         .first_valid_layer()
         .all_attributes()
-        .from_file(path)?;
+        .from_buffered(Cursor::new(bytes))?;
     let part = image.layer_data;
     let attributes = part.attributes.other.iter().chain(&image.attributes.other);
     let texts: BTreeMap<String, String> = attributes

@@ -47,8 +47,8 @@ pub fn runs_of(mut job: RenderJob, passes: u64) -> Vec<Frame> {
     let frames = (0..RUNS).map(|seed| {
         job.settings.seed = seed;
         let frame = render(&job, passes);
-        let bad = frame.stats.first_non_finite;
-        assert_eq!(frame.stats.non_finite, 0, "seed {seed}, {bad:?}");
+        let bad = frame.stats.bad_samples().next();
+        assert_eq!(frame.stats.non_finite(), 0, "seed {seed}, {bad:?}");
         frame
     });
     frames.collect()

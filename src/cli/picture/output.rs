@@ -71,6 +71,13 @@ impl Output {
                 self.path.display()
             )));
         }
+        let old = std::fs::metadata(&self.path);
+        if old.is_ok_and(|old| old.permissions().readonly()) {
+            return Err(CliError::failed(format!(
+                "{} must not be written (it is read-only)",
+                self.path.display()
+            )));
+        }
         let folder = folder(&self.path);
         if !folder.is_dir() {
             return Err(CliError::usage(format!(

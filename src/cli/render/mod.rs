@@ -17,14 +17,16 @@ use glam::UVec2;
 use super::args::RenderArgs;
 use super::error::CliError;
 use super::picture::{self, Attributes};
+use super::replay::replay_command;
 use super::scene;
 use crate::cli::print::note;
 use crate::engine::film::Frame;
-use crate::engine::integrators::{Cancel, Cancelled};
+use crate::engine::integrators::{BadSample, Cancel, Cancelled};
 use crate::engine::measure::Metrics;
 use crate::engine::scene::SceneDesc;
 use crate::engine::session::{RenderClock, RenderJob, Renderer};
 use log::Log;
+use notes::BadSampleNote;
 pub use options::{RenderOptions, expressions};
 use progress::Progress;
 use stop::State;
@@ -50,7 +52,8 @@ fn picture_of(args: &RenderArgs, frame: u32, cancel: &Cancel) -> Result<(), CliE
         .unwrap_or(UVec2::new(desc.camera.width, desc.camera.height));
     let log = Log::open(args.log.as_deref(), args.reference.as_deref(), size)?;
     let pool = thread_pool(options.threads)?;
-    let rendered = pool.install(|| render(&options, desc, size, log, cancel))?;
+    let mut rendered = pool.install(|| render(&options, desc, size, log, cancel))?;
+    rendered.number = frame;
     finish(args, &options, &rendered)
 }
 
@@ -58,6 +61,8 @@ fn picture_of(args: &RenderArgs, frame: u32, cancel: &Cancel) -> Result<(), CliE
 struct Rendered {
     frame: Frame,
     scene: String,
+    /// Number of the frame in a sequence.
+    number: u32,
     interrupted: bool,
     errors: Option<Metrics>,
 }
@@ -109,6 +114,7 @@ fn render(
     Ok(Rendered {
         frame,
         scene: job.scene.name.clone(),
+        number: 0,
         interrupted,
         errors,
     })
@@ -128,11 +134,33 @@ fn finish(args: &RenderArgs, options: &RenderOptions, rendered: &Rendered) -> Re
         note!("{}: {}", fact.label, fact.value);
     }
     note!("wrote {}", options.output.path.display());
-    notes::print_after(frame, rendered.errors.as_ref());
+    let bad = bad_samples(args, options, rendered);
+    notes::print_after(frame, rendered.errors.as_ref(), &bad);
     if args.json {
-        super::print::json(&notes::figures(frame, rendered.errors.as_ref()))?;
+        super::print::json(&notes::figures(frame, rendered.errors.as_ref(), &bad))?;
     }
     Ok(())
+}
+
+/// The first samples that went wrong, each with the command that follows it again.
+fn bad_samples(
+    args: &RenderArgs,
+    options: &RenderOptions,
+    rendered: &Rendered,
+) -> Vec<BadSampleNote> {
+    let frame = &rendered.frame;
+    let settings = &options.settings;
+    let note = |sample: BadSample| BadSampleNote {
+        what: sample.what,
+        command: replay_command(
+            &args.scene,
+            rendered.number,
+            frame.full_size,
+            settings,
+            &sample.id,
+        ),
+    };
+    frame.stats.bad_samples().map(note).collect()
 }
 
 /// A log or a picture must not replace what the render reads, nor each other.

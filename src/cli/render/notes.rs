@@ -6,7 +6,6 @@ use crate::cli::print::figure;
 use crate::cli::print::note;
 use crate::cli::scene::parameter_text;
 use crate::engine::film::Frame;
-use crate::engine::integrators::BadSample;
 use crate::engine::measure::{Metrics, unseen};
 use crate::engine::plan::RenderPlan;
 use crate::engine::session::RenderJob;
@@ -52,8 +51,21 @@ pub struct Figures {
     error: Option<f64>,
     /// Its 95 % interval.
     error_interval: Option<[f64; 2]>,
+    /// Samples that were NaN or infinite and were left out.
     non_finite: u64,
+    nan: u64,
+    infinite: u64,
+    /// Samples with a channel below 0; they count.
+    negative: u64,
+    /// Rays that met the surface that they left.
+    self_hits: u64,
+    /// Rays that left the scene from within a closed surface.
+    missed_edges: u64,
     cut_paths: u64,
+    /// Microfacet samples below the horizon: no error.
+    below_horizon: u64,
+    /// Commands that follow the first bad samples again.
+    replay: Vec<String>,
     /// Trees of rays cut at their largest number.
     cut_trees: u64,
     /// Rays of walks from the eye by the number of events before them, up to the last that has any.
@@ -74,7 +86,7 @@ pub struct Figures {
 }
 
 /// The figures of a finished frame.
-pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
+pub fn figures(frame: &Frame, reference: Option<&Metrics>, replay: &[BadSampleNote]) -> Figures {
     let [walk_lengths, light_walk_lengths] = frame.stats.lengths();
     let per_second = 1.0 / frame.t_wall.max(f64::MIN_POSITIVE);
     Figures {
@@ -86,7 +98,14 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
         samples_per_second: frame.stats.samples as f64 * per_second,
         error: frame.relative_error,
         error_interval: frame.error_estimate.and_then(|e| e.relative_interval()),
-        non_finite: frame.stats.non_finite,
+        non_finite: frame.stats.non_finite(),
+        nan: frame.stats.faults.nan,
+        infinite: frame.stats.faults.infinite,
+        negative: frame.stats.faults.negative,
+        self_hits: frame.stats.self_hits,
+        missed_edges: frame.stats.missed_edges,
+        below_horizon: frame.stats.below_horizon,
+        replay: replay.iter().map(|note| note.command.clone()).collect(),
         cut_paths: frame.stats.cut_paths,
         cut_trees: frame.stats.cut_trees,
         rays_by_level: frame.stats.levels().to_vec(),
@@ -100,8 +119,8 @@ pub fn figures(frame: &Frame, reference: Option<&Metrics>) -> Figures {
 }
 
 /// The figures, and what went wrong on the way.
-pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
-    let f = figures(frame, reference);
+pub fn print_after(frame: &Frame, reference: Option<&Metrics>, bad: &[BadSampleNote]) {
+    let f = figures(frame, reference, bad);
     let interval = f.error_interval.map(|i| i.map(figure));
     let error = f
         .error
@@ -147,19 +166,10 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
         let (rmse, relmse) = (figure(m.rmse), figure(m.relmse));
         note!("against the reference: rmse {rmse}, relmse {relmse}, nmse {nmse}");
     }
-    if f.non_finite > 0 {
-        let first = frame.stats.first_non_finite.map_or_else(String::new, place);
-        note!(
-            "warning: {} samples were not finite and were left out{first}",
-            f.non_finite
-        );
+    if f.below_horizon > 0 {
+        note!("microfacet samples below the horizon: {}", f.below_horizon);
     }
-    if f.cut_paths > 0 {
-        note!(
-            "warning: {} paths were cut at the largest number of events",
-            f.cut_paths
-        );
-    }
+    print_errors(&f, bad);
     if frame.stats.exceeded_majorants > 0 {
         note!(
             "warning: {} times a medium was denser than the bound on it, so that it is rendered \
@@ -183,10 +193,32 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>) {
     }
 }
 
-fn place(sample: BadSample) -> String {
-    let (pixel, pass) = (sample.pixel, sample.pass);
-    format!(
-        "; the first in pixel ({}, {}), pass {pass}",
-        pixel.x, pixel.y
-    )
+/// A sample that went wrong, and the command that follows it again.
+pub struct BadSampleNote {
+    /// What went wrong.
+    pub what: &'static str,
+    /// The command.
+    pub command: String,
+}
+
+/// What no sound render has, and how to look at it.
+fn print_errors(f: &Figures, bad: &[BadSampleNote]) {
+    for (count, what) in [
+        (f.nan, "samples were not a number and were left out"),
+        (f.infinite, "samples were infinite and were left out"),
+        (f.negative, "samples were negative"),
+        (f.self_hits, "rays met the surface that they left"),
+        (f.missed_edges, "rays slipped out of a closed surface"),
+        (
+            f.cut_paths,
+            "paths were cut at the largest number of events",
+        ),
+    ] {
+        if count > 0 {
+            note!("warning: {count} {what}");
+        }
+    }
+    for sample in bad {
+        note!("replay ({}): {}", sample.what, sample.command);
+    }
 }

@@ -8,7 +8,7 @@ use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
 use super::tiles::{TILE_PIXELS, Tiles};
-use crate::engine::math::Rgb;
+use crate::engine::math::{Fault, FaultCounts, Rgb};
 use crate::engine::path::{ClassId, PathClasses};
 
 /// Radiance of one path for one pixel.
@@ -25,8 +25,7 @@ struct Splat {
 pub struct SplatList {
     tiles: Tiles,
     splats: Vec<Splat>,
-    /// Splats that were NaN or infinite: they are left out.
-    pub non_finite: u64,
+    faults: FaultCounts,
 }
 
 impl SplatList {
@@ -35,7 +34,7 @@ impl SplatList {
         Self {
             tiles: Tiles::new(size),
             splats: Vec::new(),
-            non_finite: 0,
+            faults: FaultCounts::default(),
         }
     }
 
@@ -43,9 +42,11 @@ impl SplatList {
     /// lies on the film.
     #[inline]
     pub fn add(&mut self, film: Vec2, class: ClassId, value: Rgb) {
-        if !value.is_finite() {
-            self.non_finite += 1;
-            return;
+        if matches!(
+            self.faults.look_at(value),
+            Some(Fault::Nan | Fault::Infinite)
+        ) {
+            return; // left out
         }
         let (tile, place) = self.tiles.locate(film.as_uvec2());
         self.splats.push(Splat {
@@ -53,6 +54,12 @@ impl SplatList {
             class,
             value: value.to_array(),
         });
+    }
+
+    /// What was wrong with splats since this was asked last. Those that were no numbers are left
+    /// out.
+    pub fn take_faults(&mut self) -> FaultCounts {
+        std::mem::take(&mut self.faults)
     }
 
     /// Number of splats.
@@ -230,6 +237,12 @@ mod tests {
         let mut list = SplatList::new(UVec2::new(4, 4));
         list.add(Vec2::ZERO, ClassId::EMPTY, Rgb::splat(f32::NAN));
         list.add(Vec2::ZERO, ClassId::EMPTY, Rgb::splat(f32::INFINITY));
-        assert_eq!((list.len(), list.non_finite), (0, 2));
+        list.add(Vec2::ZERO, ClassId::EMPTY, Rgb::splat(-1.0));
+        let faults = list.take_faults();
+        assert_eq!((faults.nan, faults.infinite, faults.negative), (1, 1, 1));
+        assert_eq!(
+            (list.len(), list.take_faults()),
+            (1, FaultCounts::default())
+        );
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3A};
 
+use super::closed::Departure;
 use super::offset::offset_origin;
 use super::ray::Ray;
 
@@ -55,6 +56,15 @@ impl SurfaceInteraction {
     #[inline]
     pub fn is_in_volume(&self) -> bool {
         self.n_g == Vec3A::ZERO
+    }
+
+    /// Where a ray leaves in the direction `d`.
+    #[inline]
+    pub fn departure(&self, d: Vec3A) -> Departure {
+        Departure {
+            prim: self.prim,
+            front: self.n_g.dot(d) > 0.0,
+        }
     }
 
     /// A ray that leaves in the unit direction `d` without meeting this surface again at its

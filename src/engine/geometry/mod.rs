@@ -6,6 +6,7 @@
 
 pub mod accel;
 pub mod bounds;
+mod closed;
 pub mod interaction;
 pub mod mesh;
 pub mod offset;
@@ -16,6 +17,7 @@ pub mod traverse;
 pub mod triangle;
 
 pub use bounds::Bounds3;
+pub use closed::{Departure, RayFault};
 pub use interaction::SurfaceInteraction;
 pub use mesh::{DropReport, MAX_COORDINATE, MeshInput};
 pub use offset::offset_origin;

@@ -2,11 +2,13 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use glam::Vec3A;
 
 use super::accel;
 use super::bounds::Bounds3;
+use super::closed::{self, Departure, RayFault, Shell};
 use super::interaction::SurfaceInteraction;
 use super::mesh::{DropReport, MAX_COORDINATE, MeshInput, TriangleMesh};
 use super::ray::{Hit, Ray};
@@ -32,6 +34,8 @@ pub struct Geometry {
     /// By primitive; empty while no surface emits.
     lights: Vec<Option<u32>>,
     bounds: Bounds3,
+    /// By triangle; made when it is asked for first.
+    shells: OnceLock<Vec<Shell>>,
 }
 
 impl Geometry {
@@ -70,6 +74,7 @@ impl Geometry {
             hidden,
             lights: Vec::new(),
             bounds,
+            shells: OnceLock::new(),
         };
         (geometry, report)
     }
@@ -206,6 +211,38 @@ impl Geometry {
     /// The input mesh of a triangle and its index there.
     pub fn triangle_source(&self, prim: u32) -> Option<(usize, usize)> {
         self.mesh.source(prim)
+    }
+
+    /// Whether a ray that left at `left` may not meet what it left again, but did at `si`. A flat
+    /// triangle is never met again; a sphere is, from within to within.
+    #[cold]
+    pub fn self_hit(&self, left: Departure, si: &SurfaceInteraction) -> Option<RayFault> {
+        let chord = self.sphere(left.prim).is_some_and(|sphere| {
+            let arrives_in_front = si.n_g.dot(si.wo) > 0.0;
+            left.front == sphere.inward && arrives_in_front == sphere.inward
+        });
+        (!chord).then_some(RayFault::SelfHit)
+    }
+
+    /// Whether a ray that left at `left` and met nothing had to meet something: it went into what
+    /// a closed surface encloses. Scenes of very many triangles are not
+    /// looked at (`closed::MOST_TRIANGLES`).
+    #[cold]
+    pub fn missed_edge(&self, left: Departure) -> Option<RayFault> {
+        let enclosed = match self.sphere(left.prim) {
+            Some(sphere) => left.front == sphere.inward,
+            None if left.prim as usize >= self.mesh.len() => false,
+            None => {
+                let shells = self.shells.get_or_init(|| closed::shells(&self.mesh));
+                let shell = shells.get(left.prim as usize).copied();
+                match shell.unwrap_or(Shell::Open) {
+                    Shell::Open => false,
+                    Shell::Behind => !left.front,
+                    Shell::InFront => left.front,
+                }
+            }
+        };
+        enclosed.then_some(RayFault::MissedEdge)
     }
 
     /// Whether a triangle lies exactly on another of a lower number, so that no ray meets it.

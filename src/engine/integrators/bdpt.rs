@@ -10,16 +10,17 @@ use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
 use super::bidirectional::{
-    Connector, FIRST_LIGHT_VERTEX, Heuristic, PhotonGrid, Sink, Strategies, Subpath, Technique,
-    Walker, vertex_dimensions,
+    Connector, FIRST_LIGHT_VERTEX, Heuristic, LightStart, PhotonGrid, Sink, Strategies, Subpath,
+    Technique, Walker, vertex_dimensions,
 };
 use super::tiled::{CAMERA_DIMENSIONS, SamplerKind};
 use super::{
-    BadSample, Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass,
-    RenderStats,
+    Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, Recording,
+    RenderStats, ReplayError, SampleId,
 };
 use crate::engine::film::pass_buffer::PassTile;
 use crate::engine::film::{Film, PassBuffer, SampleRadiance, SplatBuffer, SplatList};
+use crate::engine::geometry::Ray;
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
 use crate::engine::plan::RenderPlan;
@@ -105,6 +106,8 @@ pub(super) struct Bidirectional {
 pub(super) struct Workspace {
     eye: Subpath,
     light: Subpath,
+    /// Where the light walk began, if there is one.
+    start: Option<LightStart>,
     densities: Vec<super::bidirectional::Density>,
 }
 
@@ -150,8 +153,9 @@ impl Bidirectional {
         let (eye_sampler, light_sampler) = samplers;
         let (eye, light) = (&mut work.eye, &mut work.light);
         let ray = cx.camera.generate_ray(film, lens);
+        sink.begin(film, &ray);
         let escape = walker.from_lens(ray, CAMERA_DIMENSIONS, eye_sampler, eye, stats);
-        let start = if cx.plan.shadow_rays && self.strategies.walk_from_lights() {
+        work.start = if cx.plan.shadow_rays && self.strategies.walk_from_lights() {
             walker.from_light(light_sampler, light, stats)
         } else {
             None
@@ -200,15 +204,15 @@ impl Bidirectional {
         }
 
         // t = 1: the light path ends on the lens.
-        let Some(start) = start else { return };
+        let Some(start) = &work.start else { return };
         let lens = eye.densities(1)[0];
         for s in 1..=light.len() {
             light_sampler.seek(lens_dimension(cx.plan, s));
             let u = light_sampler.next_2d();
             if s == 1 {
-                connector.join_light(light, &start, &lens, u);
+                connector.join_light(light, start, &lens, u);
             } else {
-                connector.join_lens((light, &start), s, &lens, u);
+                connector.join_lens((light, start), s, &lens, u);
             }
         }
 
@@ -218,7 +222,7 @@ impl Bidirectional {
                 continue;
             }
             for s in 2..=light.len() {
-                connector.connect((light, &start), s, eye, t);
+                connector.connect((light, start), s, eye, t);
             }
         }
     }
@@ -244,26 +248,48 @@ pub(super) struct Bdpt {
     splats: Option<SplatBuffer>,
 }
 
-/// Weighs and stores.
-struct Weighted<'a, 'b> {
+/// Lets the strategies through that the picture shows.
+struct Shown<'a, K> {
     picture: &'a Strategies,
-    out: &'a mut SampleRadiance<'b>,
-    splats: &'a mut SplatList,
+    to: &'a mut K,
 }
 
-impl Sink for Weighted<'_, '_> {
+impl<K: Sink> Sink for Shown<'_, K> {
     #[inline]
-    fn add(&mut self, technique: Technique, class: ClassId, value: Rgb, weight: f32) {
-        if self.picture.is_on(technique.s, technique.t) {
-            self.out.add(class, value * weight);
+    fn begin(&mut self, film: Vec2, ray: &Ray) {
+        self.to.begin(film, ray);
+    }
+
+    #[inline]
+    fn add(&mut self, of: Technique, class: ClassId, value: Rgb, weight: f32) {
+        if self.picture.is_on(of.s, of.t) {
+            self.to.add(of, class, value, weight);
         }
     }
 
     #[inline]
     fn splat(&mut self, film: Vec2, of: Technique, class: ClassId, value: Rgb, weight: f32) {
         if weight != 0.0 && self.picture.is_on(of.s, of.t) {
-            self.splats.add(film, class, value * weight);
+            self.to.splat(film, of, class, value, weight);
         }
+    }
+}
+
+/// Weighs and stores.
+struct Weighted<'a, 'b> {
+    out: &'a mut SampleRadiance<'b>,
+    splats: &'a mut SplatList,
+}
+
+impl Sink for Weighted<'_, '_> {
+    #[inline]
+    fn add(&mut self, _: Technique, class: ClassId, value: Rgb, weight: f32) {
+        self.out.add(class, value * weight);
+    }
+
+    #[inline]
+    fn splat(&mut self, film: Vec2, _: Technique, class: ClassId, value: Rgb, weight: f32) {
+        self.splats.add(film, class, value * weight);
     }
 }
 
@@ -334,13 +360,17 @@ impl Bdpt {
         };
         stats.samples += 1;
         let samplers = (&mut eye, &mut light);
+        let mut shown = Shown {
+            picture: &self.picture,
+            to: sink,
+        };
         self.estimator.sample(
             cx,
             (film, lens),
             samplers,
             self.grid.as_ref(),
             work,
-            sink,
+            &mut shown,
             stats,
         );
     }
@@ -362,20 +392,18 @@ impl Bdpt {
             for (place, pixel) in layout.pixels(first + i) {
                 out.clear();
                 let mut sink = Weighted {
-                    picture: &self.picture,
                     out: &mut out,
                     splats: &mut splats,
                 };
+                let before = stats.errors();
                 self.sample_pixel(cx, pixel, &mut work, &mut sink, &mut stats);
-                if !tile.put(place, cx.plan.planned, &out) {
-                    stats.add_bad(BadSample {
-                        pixel,
-                        pass: cx.index,
-                    });
-                }
+                stats.faults.look_at(out.whole());
+                stats.faults += splats.take_faults();
+                tile.put(place, cx.plan.planned, &out);
+                let pass = cx.index;
+                stats.keep_if_bad(&before, || SampleId::Camera { pixel, pass });
             }
         }
-        stats.non_finite += splats.non_finite;
         Ok((splats, stats))
     }
 }
@@ -407,6 +435,31 @@ impl Integrator for Bdpt {
         self.samples = Some(samples);
         self.splats = Some(splats);
         Ok(stats)
+    }
+
+    fn replay(
+        &mut self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError> {
+        let SampleId::Camera { pixel, .. } = *sample else {
+            let right = "the light path that a pixel's sample is connected to belongs to its index \
+                         in the stream camera";
+            return Err(ReplayError::other_stream(sample, right));
+        };
+        let (mut work, mut found) = (Workspace::default(), Recording::default());
+        let mut stats = RenderStats::default();
+        self.sample_pixel(cx, pixel, &mut work, &mut found, &mut stats);
+        // First the walks, then what their strategies found.
+        to.steps.push(found.steps.remove(0));
+        to.subpath(&work.eye);
+        if let Some(start) = &work.start {
+            to.start(start);
+            to.subpath(&work.light);
+        }
+        to.steps.append(&mut found.steps);
+        Ok(())
     }
 
     fn memory_bytes(&self) -> usize {

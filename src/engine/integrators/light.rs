@@ -9,10 +9,13 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use super::bdpt::lens_dimension;
-use super::bidirectional::{Connector, Density, Sink, Strategies, Subpath, Technique, Walker};
+use super::bidirectional::{
+    Connector, Density, LightStart, Sink, Strategies, Subpath, Technique, Walker,
+};
 use super::tiled::SamplerKind;
 use super::{
-    Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
+    Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, Recording,
+    RenderStats, ReplayError, SampleId,
 };
 use crate::engine::film::{Film, SplatBuffer, SplatList};
 use crate::engine::math::Rgb;
@@ -110,47 +113,58 @@ impl LightTracer {
         let mut stats = RenderStats::default();
         let mut splats = SplatList::new(cx.camera.size());
         let mut path = Subpath::default();
-        let size = cx.camera.size();
-        let per_pass = u64::from(size.x) * u64::from(size.y);
         for i in paths {
-            // Even and odd passes are two scrambles, so that their difference measures the error.
-            let index = (cx.index % 2, cx.index / 2 * per_pass + i);
-            match self.sampler {
-                SamplerKind::Independent => {
-                    let mut sampler = IndependentSampler::new(cx.seed, Stream::Light, index);
-                    self.trace(cx, &mut sampler, &mut path, &mut splats, &mut stats);
-                }
-                SamplerKind::Sobol => {
-                    let mut sampler = SobolSampler::new(cx.seed, Stream::Light, index);
-                    self.trace(cx, &mut sampler, &mut path, &mut splats, &mut stats);
-                }
-            }
+            let before = stats.errors();
+            self.trace_path(cx, i, &mut path, &mut splats, &mut stats);
+            stats.faults += splats.take_faults();
+            let pass = cx.index;
+            stats.keep_if_bad(&before, || SampleId::LightPath { path: i, pass });
         }
-        stats.non_finite += splats.non_finite;
         Ok((splats, stats))
     }
 
-    /// One light path.
+    /// Light path `number` of a pass.
+    fn trace_path(
+        &self,
+        cx: &Pass<'_>,
+        number: u64,
+        path: &mut Subpath,
+        sink: &mut impl Sink,
+        stats: &mut RenderStats,
+    ) -> Option<LightStart> {
+        // Even and odd passes are two scrambles, so that their difference measures the error.
+        let index = (cx.index % 2, cx.index / 2 * paths_per_pass(cx) + number);
+        match self.sampler {
+            SamplerKind::Independent => {
+                let mut sampler = IndependentSampler::new(cx.seed, Stream::Light, index);
+                self.trace(cx, &mut sampler, path, sink, stats)
+            }
+            SamplerKind::Sobol => {
+                let mut sampler = SobolSampler::new(cx.seed, Stream::Light, index);
+                self.trace(cx, &mut sampler, path, sink, stats)
+            }
+        }
+    }
+
+    /// One light path; where it began, if it did.
     fn trace<S: Sampler>(
         &self,
         cx: &Pass<'_>,
         sampler: &mut S,
         path: &mut Subpath,
-        splats: &mut SplatList,
+        sink: &mut impl Sink,
         stats: &mut RenderStats,
-    ) {
+    ) -> Option<LightStart> {
         stats.samples += 1;
         let walker = Walker {
             cx,
             roulette: self.roulette,
         };
-        let Some(start) = walker.from_light(sampler, path, stats) else {
-            return;
-        };
+        let start = walker.from_light(sampler, path, stats)?;
         let mut connector = Connector {
             cx,
             strategies: &self.strategies,
-            sink: splats,
+            sink,
             stats,
         };
         // The only strategy of each path: its density does not matter.
@@ -169,10 +183,42 @@ impl LightTracer {
                 connector.join_lens((path, &start), s, &lens, u);
             }
         }
+        Some(start)
     }
 }
 
+/// A light path for every pixel.
+fn paths_per_pass(cx: &Pass<'_>) -> u64 {
+    let size = cx.camera.size();
+    u64::from(size.x) * u64::from(size.y)
+}
+
 impl Integrator for LightTracer {
+    fn replay(
+        &mut self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError> {
+        let SampleId::LightPath { path: number, .. } = *sample else {
+            let right = "its samples are those of the stream light, PATH,PASS";
+            return Err(ReplayError::other_stream(sample, right));
+        };
+        let (paths, mut path) = (paths_per_pass(cx), Subpath::default());
+        if number >= paths {
+            let last = paths - 1;
+            let why = format!("a pass of this size has the light paths 0 to {last}");
+            return Err(ReplayError::Cannot(why));
+        }
+        let (mut found, mut stats) = (Recording::default(), RenderStats::default());
+        if let Some(start) = self.trace_path(cx, number, &mut path, &mut found, &mut stats) {
+            to.start(&start);
+            to.subpath(&path);
+        }
+        to.steps.append(&mut found.steps);
+        Ok(())
+    }
+
     fn memory_bytes(&self) -> usize {
         self.splats.as_ref().map_or(0, SplatBuffer::bytes)
     }
@@ -185,8 +231,7 @@ impl Integrator for LightTracer {
         };
         splats.clear();
         let mut stats = RenderStats::default();
-        // A light path for every pixel.
-        let paths = u64::from(size.x) * u64::from(size.y);
+        let paths = paths_per_pass(cx);
         let chunks = paths.div_ceil(CHUNK);
         for first in (0..chunks).step_by(ROUND as usize) {
             let round = (first..chunks.min(first + ROUND)).into_par_iter();

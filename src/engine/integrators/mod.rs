@@ -14,6 +14,7 @@ pub mod path;
 pub mod photon;
 pub mod pssmlt;
 pub mod pyramid;
+pub mod replay;
 pub mod sppm;
 pub mod stats;
 pub mod tiled;
@@ -24,6 +25,7 @@ pub use give_way::{GiveWay, Hold};
 pub use params::{ParamKind, ParamSpec, ParamValue, Params};
 pub use pass::{Cancel, Cancelled, Pass};
 pub use photon::PhotonView;
+pub use replay::{Recording, ReplayError, SampleId};
 pub use stats::{BadSample, RenderStats};
 
 use std::borrow::Cow;
@@ -50,6 +52,18 @@ pub trait Integrator: Send + Sync {
     fn needs_preview(&self, _pass: &Pass<'_>) -> bool {
         false
     }
+
+    /// Computes one sample again, by the code that renders, and writes its steps down; `cx` is
+    /// its pass.
+    ///
+    /// # Errors
+    /// Why it cannot, in one sentence; or [`Cancelled`], as in a pass.
+    fn replay(
+        &mut self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError>;
 
     /// What it prepared, for the user to read.
     fn facts(&self) -> Vec<Fact> {

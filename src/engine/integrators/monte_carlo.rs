@@ -10,8 +10,8 @@ use super::tiled::{CAMERA_DIMENSIONS, RayIntegrator, SamplerKind, Tiled};
 use super::{Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats};
 use crate::engine::bsdf::Transport;
 use crate::engine::event::Event;
-use crate::engine::film::SampleRadiance;
 use crate::engine::geometry::Ray;
+use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::sampling::Sampler;
 use crate::engine::scene::features::SceneFeatures;
 
@@ -100,7 +100,7 @@ impl RayIntegrator for MonteCarlo {
         cx: &Pass<'_>,
         ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let mut tree = Tree {
@@ -117,10 +117,10 @@ impl RayIntegrator for MonteCarlo {
 }
 
 /// What all rays of one sample share.
-struct Tree<'a, 'b, S> {
+struct Tree<'a, S, O> {
     cx: &'a Pass<'a>,
     sampler: &'a mut S,
-    out: &'a mut SampleRadiance<'b>,
+    out: &'a mut O,
     stats: &'a mut RenderStats,
     traced: u32,
 }
@@ -128,7 +128,7 @@ struct Tree<'a, 'b, S> {
 impl MonteCarlo {
     /// Follows one ray, and from where it ends as many more as are asked for. Recursion is as deep
     /// as the parameter `depth` at most.
-    fn grow<S: Sampler>(&self, tree: &mut Tree<'_, '_, S>, walk: &Walk, ray: Ray) {
+    fn grow<S: Sampler, O: RadianceSink>(&self, tree: &mut Tree<'_, S, O>, walk: &Walk, ray: Ray) {
         if tree.traced >= self.max_rays {
             return;
         }
@@ -140,10 +140,15 @@ impl MonteCarlo {
             tree.sampler.seek(first.wrapping_add(7));
             tree.sampler.next_1d()
         };
-        let Some(si) = cx.scene.intersect(&ray, number) else {
+        let hit = cx.scene.intersect(&ray, number);
+        let fault = cx.scene.ray_fault(walk.departure(), hit.as_ref());
+        tree.stats.count_ray_fault(fault);
+        let Some(si) = hit else {
             self.direct.add_escaped(cx, walk, &ray, tree.out);
             return;
         };
+        tree.out
+            .note(|| Step::vertex(&si, walk.throughput, walk.suffix));
         self.direct.add_emitted(cx, walk, &si, tree.out);
         let max = cx.plan.max_depth.unwrap_or(u32::MAX).min(self.depth);
         let bsdf = cx.scene.bsdf(&si);
@@ -162,6 +167,7 @@ impl MonteCarlo {
             let (direction, event) = (tree.sampler.next_2d(), tree.sampler.next_1d());
             match bsdf.sample(si.wo, event, direction, Transport::Radiance) {
                 Some(sample) => {
+                    tree.out.note(|| Step::scattered(&sample));
                     let letter = sample.event.letter();
                     let suffix = cx.plan.classes.prepend(letter, walk.suffix);
                     let next = walk.after(&si, &sample, suffix, 1.0 / self.rays as f32);

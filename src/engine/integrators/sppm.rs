@@ -14,9 +14,11 @@ use super::{
 };
 use crate::engine::bsdf::{Bsdf, Transport};
 use crate::engine::event::{Event, Letter};
-use crate::engine::film::{Film, SampleRadiance};
+use crate::engine::film::Film;
 use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::integrators::bidirectional::PhotonGrid;
+use crate::engine::integrators::replay::{RadianceSink, Recording, ReplayError, SampleId, Step};
+use crate::engine::math::Rgb;
 use crate::engine::sampling::{Sampler, mis};
 use crate::engine::scene::features::SceneFeatures;
 
@@ -84,6 +86,20 @@ impl Integrator for Sppm {
         Ok(stats)
     }
 
+    fn replay(
+        &mut self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError> {
+        if let Some(done) = self.photons.replay(cx, sample, to) {
+            return done;
+        }
+        let (grid, _) = self.photons.trace(cx)?;
+        self.tiled.estimator_mut().grid = Some(grid);
+        self.tiled.replay(cx, sample, to)
+    }
+
     fn memory_bytes(&self) -> usize {
         let grid = self.tiled.estimator().grid.as_ref();
         self.tiled.buffer_bytes() + grid.map_or(0, PhotonGrid::bytes)
@@ -108,7 +124,7 @@ impl RayIntegrator for Estimator {
         cx: &Pass<'_>,
         mut ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let mut walk = Walk::start();
@@ -124,10 +140,13 @@ impl RayIntegrator for Estimator {
                 sampler.seek(first + 7);
                 sampler.next_1d()
             };
-            let Some(si) = cx.scene.intersect(&ray, number) else {
+            let hit = cx.scene.intersect(&ray, number);
+            stats.count_ray_fault(cx.scene.ray_fault(walk.departure(), hit.as_ref()));
+            let Some(si) = hit else {
                 self.weights.add_escaped(cx, &walk, &ray, out);
                 return;
             };
+            out.note(|| Step::vertex(&si, walk.throughput, walk.suffix));
             self.weights.add_emitted(cx, &walk, &si, out);
             if cx.plan.max_depth.is_some_and(|max| walk.depth >= max) {
                 return;
@@ -155,6 +174,7 @@ impl RayIntegrator for Estimator {
                 stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
                 return;
             };
+            out.note(|| Step::scattered(&sample));
             if sample.event == Event::Diffuse {
                 return;
             }
@@ -179,7 +199,7 @@ impl Estimator {
         si: &SurfaceInteraction,
         bsdf: &Bsdf,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let (lights, u) = (&cx.scene.lights, sampler.next_2d());
@@ -189,6 +209,7 @@ impl Estimator {
         let Some(light) = lights.get(id).sample_li(si.p, u) else {
             return;
         };
+        out.note(|| Step::shadow_ray(id, pmf, &light));
         let light_pdf = pmf * light.pdf_dir;
         let incident = walk.throughput * light.radiance * (1.0 / light_pdf);
         let mut visibility = None;
@@ -207,6 +228,14 @@ impl Estimator {
             } else {
                 mis::power(light_pdf, bsdf.pdf(event, si.wo, light.wi))
             };
+            out.note(|| Step::Found {
+                event: Some(event),
+                light: None,
+                pdf_light: Some(light_pdf),
+                pdf_walk: Some(bsdf.pdf(event, si.wo, light.wi)),
+                weight,
+                visible: Rgb::splat(visible),
+            });
             out.add(class, incident * f_cos * (weight * visible));
         }
     }
@@ -219,12 +248,15 @@ impl Estimator {
         walk: &Walk,
         si: &SurfaceInteraction,
         bsdf: &Bsdf,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
     ) {
         let Some(grid) = &self.grid else { return };
         let plan = cx.plan;
         let suffix = plan.classes.prepend(Letter::D, walk.suffix);
         let scale = (1.0 / grid.merging()) as f32;
+        out.note(|| Step::Read {
+            from: "the photons around",
+        });
         grid.within(si.p, |photon| {
             let events = photon.s - 2;
             let class = plan.classes.join(photon.class, suffix);

@@ -2,16 +2,31 @@
 
 use std::ops::AddAssign;
 
-use glam::UVec2;
+use super::replay::SampleId;
+use crate::engine::geometry::RayFault;
+use crate::engine::math::FaultCounts;
 
-/// A camera sample that brought no finite radiance: enough to compute it again.
+/// A sample in which something went wrong: enough to compute it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BadSample {
-    /// Its pixel.
-    pub pixel: UVec2,
-    /// Its pass.
-    pub pass: u64,
+    /// Its name.
+    pub id: SampleId,
+    /// What went wrong, one of [`ERRORS`].
+    pub what: &'static str,
 }
+
+/// What counts as an error, the worst first, in the order of [`RenderStats::errors`].
+pub const ERRORS: [&str; 6] = [
+    "its light was not a number",
+    "its light was infinite",
+    "its light was negative",
+    "a ray met the surface that it left",
+    "a ray slipped out of a closed surface",
+    "it was cut at the largest number of events",
+];
+
+/// How many bad samples are kept.
+const KEPT: usize = 4;
 
 pub use crate::engine::photon::LEVELS;
 
@@ -22,10 +37,14 @@ pub struct RenderStats {
     pub rays: u64,
     /// Camera samples.
     pub samples: u64,
-    /// Samples whose radiance was NaN or infinite; they are left out of the mean.
-    pub non_finite: u64,
-    /// The first of them.
-    pub first_non_finite: Option<BadSample>,
+    /// Samples whose radiance was NaN or infinite, which are left out of the mean, or negative.
+    pub faults: FaultCounts,
+    /// Rays that met the surface that they left, where they could not.
+    pub self_hits: u64,
+    /// Rays that left the scene from within a closed surface: they slipped through an edge.
+    pub missed_edges: u64,
+    /// The first samples with errors.
+    bad: [Option<BadSample>; KEPT],
     /// Paths that were cut at the largest number of events a path may have.
     pub cut_paths: u64,
     /// Times that a medium was denser than the bound its tracking steps by: those parts of it are
@@ -123,10 +142,56 @@ impl RenderStats {
         (self.mutations > 0).then(|| self.accepted as f64 / self.mutations as f64)
     }
 
-    /// Counts a sample that was not finite.
-    pub fn add_bad(&mut self, sample: BadSample) {
-        self.non_finite += 1;
-        self.first_non_finite = self.first_non_finite.or(Some(sample));
+    /// Samples that were left out because their radiance was NaN or infinite.
+    pub fn non_finite(&self) -> u64 {
+        self.faults.non_finite()
+    }
+
+    /// How often each of [`ERRORS`] happened. All are zero in a sound render of a sound scene.
+    #[inline]
+    pub fn errors(&self) -> [u64; ERRORS.len()] {
+        [
+            self.faults.nan,
+            self.faults.infinite,
+            self.faults.negative,
+            self.self_hits,
+            self.missed_edges,
+            self.cut_paths,
+        ]
+    }
+
+    /// Counts what is wrong with a ray, if anything is.
+    #[inline]
+    pub fn count_ray_fault(&mut self, fault: Option<RayFault>) {
+        match fault {
+            None => {}
+            Some(RayFault::SelfHit) => self.self_hits += 1,
+            Some(RayFault::MissedEdge) => self.missed_edges += 1,
+        }
+    }
+
+    /// Keeps the name of the sample that was taken since [`Self::errors`] were `before`, if there
+    /// are more now, and if it is one of the first.
+    #[inline]
+    pub fn keep_if_bad(&mut self, before: &[u64; ERRORS.len()], id: impl FnOnce() -> SampleId) {
+        let now = self.errors();
+        if now != *before {
+            let worst = (0..now.len()).find(|i| now[*i] != before[*i]);
+            let what = ERRORS[worst.unwrap_or(0)];
+            self.keep(BadSample { id: id(), what });
+        }
+    }
+
+    /// Keeps a bad sample, if it is one of the first.
+    pub fn keep(&mut self, sample: BadSample) {
+        if let Some(free) = self.bad.iter_mut().find(|kept| kept.is_none()) {
+            *free = Some(sample);
+        }
+    }
+
+    /// The first samples in which something went wrong.
+    pub fn bad_samples(&self) -> impl Iterator<Item = BadSample> {
+        self.bad.into_iter().flatten()
     }
 }
 
@@ -134,8 +199,10 @@ impl AddAssign for RenderStats {
     fn add_assign(&mut self, o: Self) {
         self.rays += o.rays;
         self.samples += o.samples;
-        self.non_finite += o.non_finite;
-        self.first_non_finite = self.first_non_finite.or(o.first_non_finite);
+        self.faults += o.faults;
+        self.self_hits += o.self_hits;
+        self.missed_edges += o.missed_edges;
+        o.bad_samples().for_each(|sample| self.keep(sample));
         self.cut_paths += o.cut_paths;
         self.exceeded_majorants += o.exceeded_majorants;
         self.below_horizon += o.below_horizon;

@@ -3,10 +3,11 @@
 use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
-use super::{BadSample, Cancelled, Integrator, Params, Pass, RenderStats};
+use super::{Cancelled, Integrator, Params, Pass, RenderStats};
 use crate::engine::film::pass_buffer::PassTile;
 use crate::engine::film::{Film, PassBuffer, SampleRadiance};
 use crate::engine::geometry::Ray;
+use crate::engine::integrators::replay::{RadianceSink, Recording, ReplayError, SampleId, Step};
 use crate::engine::sampling::{IndependentSampler, Sampler, SobolSampler, Stream};
 
 /// First dimension that belongs to the first vertex: two for the film, two for the lens.
@@ -20,7 +21,7 @@ pub trait RayIntegrator: Send + Sync {
         cx: &Pass<'_>,
         ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     );
 }
@@ -76,12 +77,12 @@ impl<T: RayIntegrator> Tiled<T> {
         self.buffer.as_ref().map_or(0, PassBuffer::bytes)
     }
 
-    /// Computes the sample of one pixel in one pass again, alone.
+    /// Takes the sample of one pixel in one pass.
     pub fn sample(
         &self,
         cx: &Pass<'_>,
         pixel: UVec2,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         // Even and odd passes are two scrambles, so that their difference measures the error.
@@ -106,7 +107,7 @@ impl<T: RayIntegrator> Tiled<T> {
         cx: &Pass<'_>,
         pixel: UVec2,
         mut sampler: S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let film = pixel.as_vec2() + sampler.next_2d();
@@ -117,7 +118,8 @@ impl<T: RayIntegrator> Tiled<T> {
         };
         sampler.seek(CAMERA_DIMENSIONS);
         let ray = cx.camera.generate_ray(film, lens);
-        out.clear();
+        let (p, d) = (ray.o, ray.d);
+        out.note(|| Step::Lens { p, d, film });
         stats.samples += 1;
         self.estimator.radiance(cx, ray, &mut sampler, out, stats);
     }
@@ -129,13 +131,13 @@ impl<T: RayIntegrator> Tiled<T> {
         tile.begin();
         let tiles = crate::engine::film::tiles::Tiles::new(cx.camera.size());
         for (place, pixel) in tiles.pixels(index) {
+            out.clear();
+            let before = stats.errors();
             self.sample(cx, pixel, &mut out, &mut stats);
-            if !tile.put(place, planned, &out) {
-                stats.add_bad(BadSample {
-                    pixel,
-                    pass: cx.index,
-                });
-            }
+            stats.faults.look_at(out.whole());
+            tile.put(place, planned, &out);
+            let pass = cx.index;
+            stats.keep_if_bad(&before, || SampleId::Camera { pixel, pass });
         }
         stats
     }
@@ -163,6 +165,20 @@ impl<T: RayIntegrator> Integrator for Tiled<T> {
                 sum += s;
                 sum
             }))
+    }
+
+    fn replay(
+        &mut self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError> {
+        let SampleId::Camera { pixel, .. } = *sample else {
+            let right = "its samples are those of the stream camera";
+            return Err(ReplayError::other_stream(sample, right));
+        };
+        self.sample(cx, pixel, to, &mut RenderStats::default());
+        Ok(())
     }
 
     fn memory_bytes(&self) -> usize {

@@ -10,10 +10,11 @@
 use rayon::prelude::*;
 
 use super::bdpt::Bdpt;
-use super::bidirectional::{PhotonGrid, PhotonList, Subpath, Walker};
+use super::bidirectional::{LightStart, PhotonGrid, PhotonList, Subpath, Walker};
 use super::tiled::SamplerKind;
 use super::{
-    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
+    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, Recording,
+    RenderStats, ReplayError, SampleId,
 };
 use crate::engine::film::Film;
 use crate::engine::sampling::{IndependentSampler, SobolSampler, Stream};
@@ -126,8 +127,7 @@ impl PhotonSource {
 
     /// Traces the light paths of a pass, one for every pixel but no more than [`MAX_PATHS`].
     pub(super) fn trace(&self, cx: &Pass<'_>) -> Result<(PhotonGrid, RenderStats), Cancelled> {
-        let size = cx.camera.size();
-        let paths = (u64::from(size.x) * u64::from(size.y)).clamp(1, MAX_PATHS);
+        let paths = paths_per_pass(cx);
         let chunks = (0..paths.div_ceil(CHUNK)).into_par_iter();
         let done: Result<Vec<_>, Cancelled> = chunks
             .map(|c| {
@@ -143,6 +143,58 @@ impl PhotonSource {
         Ok((PhotonGrid::new(&lists, radius, paths), stats))
     }
 
+    /// Follows a light path of a pass again; None if `sample` is none.
+    pub(super) fn replay(
+        &self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Option<Result<(), ReplayError>> {
+        let SampleId::MergedPath { path: number, .. } = *sample else {
+            return None;
+        };
+        let paths = paths_per_pass(cx);
+        if number >= paths {
+            let last = paths - 1;
+            let why = format!("a pass of this size has the light paths 0 to {last}");
+            return Some(Err(ReplayError::Cannot(why)));
+        }
+        let (mut path, mut stats) = (Subpath::default(), RenderStats::default());
+        let start = self.trace_path(cx, paths, number, &mut path, &mut stats);
+        if let Some(start) = &start {
+            to.start(start);
+            to.subpath(&path);
+        }
+        Some(Ok(()))
+    }
+
+    /// Light path `number` of a pass.
+    fn trace_path(
+        &self,
+        cx: &Pass<'_>,
+        per_pass: u64,
+        number: u64,
+        path: &mut Subpath,
+        stats: &mut RenderStats,
+    ) -> Option<LightStart> {
+        let walker = Walker {
+            cx,
+            roulette: self.roulette,
+        };
+        // Even and odd passes are two scrambles, so that their difference measures the error.
+        let index = (cx.index % 2, cx.index / 2 * per_pass + number);
+        match self.sampler {
+            SamplerKind::Independent => {
+                let mut sampler = IndependentSampler::new(cx.seed, Stream::Photon, index);
+                walker.from_light(&mut sampler, path, stats)
+            }
+            SamplerKind::Sobol => {
+                let mut sampler = SobolSampler::new(cx.seed, Stream::Photon, index);
+                walker.from_light(&mut sampler, path, stats)
+            }
+        }
+    }
+
     fn trace_chunk(
         &self,
         cx: &Pass<'_>,
@@ -151,29 +203,23 @@ impl PhotonSource {
     ) -> (PhotonList, RenderStats) {
         let mut stats = RenderStats::default();
         let (mut list, mut path) = (PhotonList::default(), Subpath::default());
-        let walker = Walker {
-            cx,
-            roulette: self.roulette,
-        };
         for i in paths {
-            // Even and odd passes are two scrambles, so that their difference measures the error.
-            let index = (cx.index % 2, cx.index / 2 * per_pass + i);
-            let start = match self.sampler {
-                SamplerKind::Independent => {
-                    let mut sampler = IndependentSampler::new(cx.seed, Stream::Photon, index);
-                    walker.from_light(&mut sampler, &mut path, &mut stats)
-                }
-                SamplerKind::Sobol => {
-                    let mut sampler = SobolSampler::new(cx.seed, Stream::Photon, index);
-                    walker.from_light(&mut sampler, &mut path, &mut stats)
-                }
-            };
+            let before = stats.errors();
+            let start = self.trace_path(cx, per_pass, i, &mut path, &mut stats);
+            let pass = cx.index;
+            stats.keep_if_bad(&before, || SampleId::MergedPath { path: i, pass });
             if let Some(start) = start {
                 list.store(&path, &start);
             }
         }
         (list, stats)
     }
+}
+
+/// Light paths of a pass: one for every pixel, but no more than [`MAX_PATHS`].
+fn paths_per_pass(cx: &Pass<'_>) -> u64 {
+    let size = cx.camera.size();
+    (u64::from(size.x) * u64::from(size.y)).clamp(1, MAX_PATHS)
 }
 
 struct Vcm {
@@ -187,6 +233,20 @@ impl Integrator for Vcm {
         self.bdpt.merge_with(grid);
         stats += self.bdpt.render_pass(cx, film)?;
         Ok(stats)
+    }
+
+    fn replay(
+        &mut self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError> {
+        if let Some(done) = self.photons.replay(cx, sample, to) {
+            return done;
+        }
+        let (grid, _) = self.photons.trace(cx)?;
+        self.bdpt.merge_with(grid);
+        self.bdpt.replay(cx, sample, to)
     }
 
     fn memory_bytes(&self) -> usize {

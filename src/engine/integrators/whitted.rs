@@ -14,8 +14,8 @@ use super::path::turned;
 use super::tiled::{CAMERA_DIMENSIONS, RayIntegrator, SamplerKind, Tiled};
 use super::{Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats};
 use crate::engine::bsdf::{Bsdf, Transport};
-use crate::engine::film::SampleRadiance;
-use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
+use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
 use crate::engine::sampling::Sampler;
@@ -104,6 +104,7 @@ struct Branch {
     depth: u32,
     /// What roulette looks at: throughput in the eye's medium.
     kept: Rgb,
+    departure: Departure,
 }
 
 impl RayIntegrator for Whitted {
@@ -112,7 +113,7 @@ impl RayIntegrator for Whitted {
         cx: &Pass<'_>,
         ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let mut waiting = ArrayVec::<Branch, MAX_WAITING>::new();
@@ -122,6 +123,7 @@ impl RayIntegrator for Whitted {
             suffix: ClassId::EMPTY,
             depth: 0,
             kept: Rgb::WHITE,
+            departure: Departure::NOWHERE,
         });
         let mut first = CAMERA_DIMENSIONS;
         while let Some(branch) = waiting.pop() {
@@ -131,12 +133,16 @@ impl RayIntegrator for Whitted {
                 sampler.seek(first + 7);
                 sampler.next_1d()
             };
-            let Some(si) = cx.scene.intersect(&branch.ray, number) else {
+            let hit = cx.scene.intersect(&branch.ray, number);
+            stats.count_ray_fault(cx.scene.ray_fault(branch.departure, hit.as_ref()));
+            let Some(si) = hit else {
                 let sky = cx.scene.lights.escaped(branch.ray.d);
                 out.add(branch.suffix, branch.throughput * sky);
                 first += RAY_DIMENSIONS;
                 continue;
             };
+
+            out.note(|| Step::vertex(&si, branch.throughput, branch.suffix));
 
             // A lamp that is seen, directly or in mirrors and through glass.
             if let Some(id) = si.light {
@@ -169,7 +175,7 @@ impl Whitted {
         si: &SurfaceInteraction,
         bsdf: &Bsdf,
         u: Vec2,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         for (i, light) in cx.scene.lights.as_slice().iter().enumerate() {
@@ -183,6 +189,7 @@ impl Whitted {
             let Some(sample) = light.sample_li(si.p, u) else {
                 continue;
             };
+            out.note(|| Step::shadow_ray(i as u32, 1.0, &sample));
             let incident = branch.throughput * sample.radiance * (1.0 / sample.pdf_dir);
             let mut visibility = None;
             for event in bsdf.non_delta_events() {
@@ -245,6 +252,7 @@ impl Whitted {
                 suffix: cx.plan.classes.prepend(event.letter(), branch.suffix),
                 depth: branch.depth + 1,
                 kept: branch.kept * weight * (sample.eta * sample.eta),
+                departure: si.departure(sample.wi),
             };
             if !all {
                 let survival = next.kept.max_component().min(MAX_SURVIVAL);

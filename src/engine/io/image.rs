@@ -64,9 +64,47 @@ pub fn read_from(
     Ok(image)
 }
 
+/// Most pixels a byte of a file stands for: 1032 bytes, which a byte of deflate says at most, of
+/// eight pixels each. A file that claims more was cut, or was made to exhaust memory.
+const PIXELS_A_BYTE: u64 = 1032 * 8;
+
+/// Refuses a size that a file of `bytes` bytes cannot hold, before memory is taken for it.
+fn check_claim(width: u64, height: u64, bytes: usize) -> Result<(), String> {
+    let side = u64::from(MAX_SIDE);
+    if width > side || height > side {
+        return Err(format!(
+            "it claims {width} × {height} pixels, and a side may have at most {side}"
+        ));
+    }
+    if width * height > PIXELS_A_BYTE * bytes as u64 {
+        return Err(format!(
+            "it claims {width} × {height} pixels, more than its {bytes} bytes can hold"
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses an OpenEXR file whose parts claim more pixels than it can hold.
+///
+/// # Errors
+/// What is wrong, without the file's name.
+pub fn check_exr(bytes: &[u8]) -> Result<(), String> {
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)
+        .map_err(|e| e.to_string())?;
+    let mut headers = meta.headers.iter();
+    headers.try_for_each(|header| {
+        let (width, height) = (header.layer_size.width(), header.layer_size.height());
+        check_claim(width as u64, height as u64, bytes.len())
+    })
+}
+
 fn decode(bytes: &[u8], encoding: Encoding) -> Result<ImageData, String> {
     let format = ::image::guess_format(bytes)
         .map_err(|_| "it is neither PNG, JPEG, Radiance HDR nor OpenEXR".to_owned())?;
+    // Sizes stand in the head of a file; what follows is decoded only if it can hold so much.
+    let head = ImageReader::with_format(Cursor::new(bytes), format);
+    let (width, height) = head.into_dimensions().map_err(|e| e.to_string())?;
+    check_claim(width.into(), height.into(), bytes.len())?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
@@ -99,21 +137,7 @@ pub fn srgb_to_linear(v: f32) -> f32 {
 
 fn decode_exr(bytes: &[u8]) -> Result<ImageData, String> {
     use exr::prelude::{ReadChannels, ReadLayers, read};
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)
-        .map_err(|e| e.to_string())?;
-    let size = meta
-        .headers
-        .first()
-        .map(|h| h.layer_size)
-        .ok_or("it has no image")?;
-    let limit = MAX_SIDE as usize;
-    if size.width() > limit || size.height() > limit {
-        return Err(format!(
-            "it claims {} × {} pixels",
-            size.width(),
-            size.height()
-        ));
-    }
+    check_exr(bytes)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()

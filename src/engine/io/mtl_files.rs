@@ -40,6 +40,12 @@ impl MtlFiles {
         })?;
         let text = String::from_utf8_lossy(&bytes);
         self.note_lines(&path, &text);
+        if let Some(line) = short_color(&text) {
+            let message = "this colour has fewer than three numbers";
+            let error = InputError::at(&path, line, message);
+            self.error.get_or_insert(error);
+            return Err(LoadError::MaterialParseError);
+        }
         tobj::load_mtl_buf(&mut &bytes[..]).inspect_err(|_| {
             let error = InputError {
                 file: path,
@@ -84,8 +90,19 @@ impl MtlFiles {
     }
 }
 
+/// The first line, from 1, of a colour with fewer than three numbers: tobj panics there.
+fn short_color(text: &str) -> Option<usize> {
+    let short = |line: &str| {
+        let mut words = line.split_whitespace();
+        matches!(words.next(), Some("Ka" | "Kd" | "Ks" | "Ke")) && words.count() < 3
+    };
+    text.lines().position(short).map(|i| i + 1)
+}
+
 /// The first line that tobj refuses, from 1.
 fn first_bad_line(text: &str) -> Option<usize> {
-    let bad = |line: &str| tobj::load_mtl_buf(&mut line.as_bytes()).is_err();
+    let bad = |line: &str| {
+        short_color(line).is_some() || tobj::load_mtl_buf(&mut line.as_bytes()).is_err()
+    };
     text.lines().position(bad).map(|i| i + 1)
 }

@@ -20,6 +20,9 @@ use crate::engine::geometry::MAX_COORDINATE;
 use crate::engine::math::Rgb;
 use crate::engine::scene::desc::{CameraDesc, LightDesc, MeshDesc, NamedMaterial, SceneDesc};
 
+/// Most names of unknown materials that are told: each is compared with all that are known.
+const MOST_TOLD: usize = 100;
+
 /// What an OBJ file holds.
 #[derive(Clone, Debug, Default)]
 pub struct ObjFile {
@@ -49,6 +52,7 @@ pub fn read(
         ignore_lines: true,
         ..LoadOptions::default()
     };
+    refuse_wild_indices(path, &bytes)?;
     let mtl_files = RefCell::new(MtlFiles::default());
     let loaded = tobj::load_obj_buf(&mut &bytes[..], &options, |name| {
         mtl_files.borrow_mut().load(files, path, name)
@@ -129,7 +133,7 @@ fn warn_of_unknown_names(
             continue;
         };
         let known = materials.iter().any(|m| m.name == name);
-        if !known && told.insert(name.to_owned()) {
+        if !known && told.len() < MOST_TOLD && told.insert(name.to_owned()) {
             let names = materials.iter().map(|m| m.name.as_str());
             let hint = did_you_mean(name, names);
             let line = number + 1;
@@ -237,6 +241,37 @@ fn locate(path: &str, bytes: &[u8], error: &LoadError) -> InputError {
         line: found,
         message: words(error).to_owned(),
     }
+}
+
+/// Refuses indices that tobj computes with as if they fitted: relative ones that point before the
+/// first vertex, and numbers of more digits than any file has vertices.
+fn refuse_wild_indices(path: &str, bytes: &[u8]) -> Result<(), InputError> {
+    let mut counts = [0_i64; 3];
+    for (number, line) in bytes.split(|b| *b == b'\n').enumerate() {
+        let line = line.trim_ascii_start();
+        let is = |word: &[u8]| {
+            let rest = line.strip_prefix(word);
+            rest.is_some_and(|rest| rest.first().is_some_and(u8::is_ascii_whitespace))
+        };
+        for (count, word) in counts.iter_mut().zip([b"v".as_slice(), b"vt", b"vn"]) {
+            *count += i64::from(is(word));
+        }
+        let long = |line: &[u8]| line.split(|b| !b.is_ascii_digit()).any(|n| n.len() > 12);
+        if !is(b"f") || !(line.contains(&b'-') || long(line)) {
+            continue;
+        }
+        let text = String::from_utf8_lossy(line);
+        let wild = |word: &str| {
+            let parts = word.split('/').zip(counts);
+            let mut indices = parts.filter_map(|(part, count)| Some((part.parse().ok()?, count)));
+            long(word.as_bytes()) || indices.any(|(i, count): (i64, i64)| i < -count)
+        };
+        if text.split_whitespace().skip(1).any(wild) {
+            let message = words(&LoadError::FaceVertexOutOfBounds);
+            return Err(InputError::at(path, number + 1, message));
+        }
+    }
+    Ok(())
 }
 
 /// Whether `v`, `v/vt`, `v//vn` or `v/vt/vn` refers to what stands before it.

@@ -2,9 +2,13 @@
 
 use glam::{Vec2, Vec3};
 
-/// Splits the polygon through `points` into triangles of indices into it. A polygon that is not
-/// simple, or has no area, is split as a fan: its degenerate triangles are dropped later, with a
-/// count.
+/// Most corners that are looked at for one polygon: enough for any with some hundreds of corners, and
+/// for convex ones of ten thousand. Clipping takes the cube of the number at worst.
+const MOST_LOOKS: usize = 100_000_000;
+
+/// Splits the polygon through `points` into triangles of indices into it. What is left of a polygon
+/// that is not simple, has no area or far too many corners is split as a fan: its degenerate
+/// triangles are dropped later, with a count.
 pub fn triangulate(points: &[Vec3]) -> Vec<[usize; 3]> {
     let n = points.len();
     if n < 3 {
@@ -16,8 +20,13 @@ pub fn triangulate(points: &[Vec3]) -> Vec<[usize; 3]> {
     let flat = project(points);
     let mut left: Vec<usize> = (0..n).collect();
     let mut triangles = Vec::with_capacity(n - 2);
-    while left.len() > 3 {
-        let Some(ear) = (0..left.len()).find(|&i| is_ear(&flat, &left, i)) else {
+    let mut looks = 0;
+    while left.len() > 3 && looks < MOST_LOOKS {
+        let ear = (0..left.len()).find(|&i| {
+            looks += left.len();
+            looks >= MOST_LOOKS || is_ear(&flat, &left, i)
+        });
+        let Some(ear) = ear.filter(|_| looks < MOST_LOOKS) else {
             break;
         };
         let m = left.len();

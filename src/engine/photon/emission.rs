@@ -66,7 +66,8 @@ impl Emission {
 }
 
 fn emitted(ray: Ray, flux: Rgb) -> Option<Emitted> {
-    (!flux.is_black() && flux.is_finite()).then_some(Emitted { ray, flux })
+    // What is no number is let through, and counted where it lands.
+    (!flux.is_black()).then_some(Emitted { ray, flux })
 }
 
 /// From the point of `sample` on a light, in a direction of the projection map.

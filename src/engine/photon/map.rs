@@ -6,8 +6,8 @@ use super::emission::Emission;
 use super::kdtree::{KdTree, SplitPlane, SplitRule};
 use super::record::{FullPhoton, PackedPhoton, Photon, Record};
 use super::trace::{MapKind, Roulette, Walks, Witness};
-use crate::engine::geometry::SurfaceInteraction;
-use crate::engine::math::Rgb;
+use crate::engine::geometry::{RayFault, SurfaceInteraction};
+use crate::engine::math::{Fault, FaultCounts, Rgb};
 use crate::engine::path::PathClasses;
 use crate::engine::sampling::{IndependentSampler, SobolSampler, Stream};
 use crate::engine::scene::Scene;
@@ -74,9 +74,21 @@ pub struct MapCounts {
     pub roulette: [u64; 2],
     /// Paths cut at the largest number of events.
     pub cut: u64,
+    /// Photons whose power is not finite, which are left out, or negative.
+    pub faults: FaultCounts,
+    /// Rays that met the surface that they left, and that slipped out of a closed one.
+    pub strayed: [u64; 2],
+    /// Number of the first photon with an error, and which of [`MapCounts::errors`].
+    pub first_bad: Option<(u64, usize)>,
 }
 
 impl MapCounts {
+    /// Errors: not a number, infinite, negative, self-hits, missed edges, cut paths.
+    pub fn errors(&self) -> [u64; 6] {
+        let (f, [hits, edges]) = (self.faults, self.strayed);
+        [f.nan, f.infinite, f.negative, hits, edges, self.cut]
+    }
+
     fn add(&mut self, o: &Self) {
         self.emitted += o.emitted;
         self.stored += o.stored;
@@ -86,6 +98,9 @@ impl MapCounts {
         (0..LEVELS).for_each(|i| self.levels[i] += o.levels[i]);
         (0..2).for_each(|i| self.roulette[i] += o.roulette[i]);
         self.cut += o.cut;
+        self.faults += o.faults;
+        (0..2).for_each(|i| self.strayed[i] += o.strayed[i]);
+        self.first_bad = self.first_bad.or(o.first_bad);
     }
 }
 
@@ -233,6 +248,12 @@ impl<T> Chunk<T> {
 
 impl<T: Record> Witness for Chunk<T> {
     fn stored(&mut self, photon: Photon, si: &SurfaceInteraction, u: f32) {
+        if matches!(
+            self.counts.faults.look_at(photon.power),
+            Some(Fault::Nan | Fault::Infinite)
+        ) {
+            return; // left out
+        }
         self.counts.stored += 1;
         self.counts.direct += u64::from(photon.events == 0);
         let power: Rgb = photon.power;
@@ -240,9 +261,13 @@ impl<T: Record> Witness for Chunk<T> {
         self.photons.push(T::pack(&photon, si.n_g, self.unit, u));
     }
 
-    fn played(&mut self, survived: bool) {
+    fn survived(&mut self, _: f32, power: Option<Rgb>) {
         self.counts.roulette[0] += 1;
-        self.counts.roulette[1] += u64::from(survived);
+        self.counts.roulette[1] += u64::from(power.is_some());
+    }
+
+    fn strayed(&mut self, fault: RayFault) {
+        self.counts.strayed[usize::from(fault == RayFault::MissedEdge)] += 1;
     }
 
     fn cut(&mut self) {
@@ -300,7 +325,12 @@ pub fn trace_photons<T: Record, E: Send>(
                 let mut chunk = Chunk::new(unit);
                 for path in i * CHUNK..((i + 1) * CHUNK).min(end) {
                     let number = (pilot, path);
+                    let before = chunk.counts.errors();
                     let rays = follow(walks, settings, number, share, &mut chunk);
+                    let after = chunk.counts.errors();
+                    if let Some(what) = (0..after.len()).find(|i| after[*i] != before[*i]) {
+                        chunk.counts.first_bad.get_or_insert((path, what));
+                    }
                     chunk.counts.rays += rays;
                     // A photon has a ray before each of its events, and one after the last.
                     for level in 0..rays {

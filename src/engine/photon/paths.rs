@@ -7,7 +7,8 @@ use super::map::{MapSettings, PhotonMap, follow};
 use super::record::Photon;
 use super::trace::{Walks, Witness};
 use crate::engine::geometry::{Ray, SurfaceInteraction};
-use crate::engine::path::PathClasses;
+use crate::engine::math::Rgb;
+use crate::engine::path::{ClassId, PathClasses};
 use crate::engine::scene::Scene;
 
 /// The way of one photon.
@@ -25,7 +26,7 @@ impl Witness for PhotonPath {
         self.stored.push(photon);
     }
 
-    fn travelled(&mut self, ray: &Ray, si: Option<&SurfaceInteraction>) {
+    fn travelled(&mut self, ray: &Ray, si: Option<&SurfaceInteraction>, _: Rgb, _: ClassId) {
         if self.points.is_empty() {
             self.points.push(ray.o);
         }
@@ -44,6 +45,24 @@ impl PhotonMap {
         settings: &MapSettings,
         range: std::ops::Range<u64>,
     ) -> Vec<PhotonPath> {
+        let one = |number| {
+            let mut path = PhotonPath::default();
+            self.follow(scene, classes, emission, settings, number, &mut path);
+            path
+        };
+        range.map(one).collect()
+    }
+
+    /// Follows photon `number` of those that this map was made of, and tells `to` of its way.
+    pub fn follow(
+        &self,
+        scene: &Scene,
+        classes: &PathClasses,
+        emission: &Emission,
+        settings: &MapSettings,
+        number: u64,
+        to: &mut impl Witness,
+    ) {
         let walks = Walks {
             scene,
             classes,
@@ -52,11 +71,6 @@ impl PhotonMap {
             emission,
         };
         let share = (1.0 / self.counts.emitted.max(1) as f64) as f32;
-        let one = |number| {
-            let mut path = PhotonPath::default();
-            follow(&walks, settings, (false, number), share, &mut path);
-            path
-        };
-        range.map(one).collect()
+        follow(&walks, settings, (false, number), share, to);
     }
 }

@@ -1,10 +1,10 @@
 //! The first pass: photons scattered through the scene by roulette (Jensen 2001, chapter 5).
 
-use super::emission::{EMISSION_DIMENSIONS, Emission};
+use super::emission::{EMISSION_DIMENSIONS, Emission, Emitted};
 use super::record::{MAX_EVENTS, Photon};
-use crate::engine::bsdf::Transport;
+use crate::engine::bsdf::{BsdfSample, Transport};
 use crate::engine::event::{Event, Letter};
-use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Ray, RayFault, SurfaceInteraction};
 use crate::engine::math::Rgb;
 use crate::engine::path::{ClassId, PathClasses};
 use crate::engine::sampling::Sampler;
@@ -79,10 +79,17 @@ pub struct Walks<'a> {
 pub trait Witness {
     /// It was stored at `si`; `u` is a number for rounding.
     fn stored(&mut self, photon: Photon, si: &SurfaceInteraction, u: f32);
-    /// It travelled along `ray` to `si`, or left the scene.
-    fn travelled(&mut self, _ray: &Ray, _si: Option<&SurfaceInteraction>) {}
-    /// It played roulette.
-    fn played(&mut self, _survived: bool) {}
+    /// It left a light; its power is its flux times `share`.
+    fn emitted(&mut self, _start: &Emitted, _share: f32) {}
+    /// It travelled along `ray` to `si`, or left the scene, with this power and after events of
+    /// this class.
+    fn travelled(&mut self, _: &Ray, _si: Option<&SurfaceInteraction>, _power: Rgb, _: ClassId) {}
+    /// An event and a direction were drawn.
+    fn scattered(&mut self, _sample: &BsdfSample) {}
+    /// It played roulette with the number `u`: its power then, if it survived.
+    fn survived(&mut self, _u: f32, _power: Option<Rgb>) {}
+    /// Something went wrong with a ray of it.
+    fn strayed(&mut self, _fault: RayFault) {}
     /// It was cut at the largest number of events.
     fn cut(&mut self) {}
 }
@@ -94,6 +101,7 @@ impl Walks<'_> {
         let Some(start) = self.emission.sample(self.scene, sampler) else {
             return 0;
         };
+        to.emitted(&start, share);
         if self.scene.features.media {
             return self.follow_in_media(start, share, sampler, to);
         }
@@ -101,7 +109,7 @@ impl Walks<'_> {
         let mut power = start.flux * share;
         let first_power = power.max_component();
         let (mut class, mut events, mut prefix) = (ClassId::EMPTY, 0_u32, Prefix::Empty);
-        let mut rays = 0;
+        let (mut rays, mut left) = (0, Departure::NOWHERE);
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let first = EMISSION_DIMENSIONS + VERTEX_DIMENSIONS * events;
@@ -110,7 +118,10 @@ impl Walks<'_> {
             let (roulette, rounding) = (sampler.next_1d(), sampler.next_1d());
             rays += 1;
             let si = self.scene.intersect(&ray, || sampler.next_1d());
-            to.travelled(&ray, si.as_ref());
+            to.travelled(&ray, si.as_ref(), power, class);
+            if let Some(fault) = self.scene.ray_fault(left, si.as_ref()) {
+                to.strayed(fault);
+            }
             let Some(si) = si else { return rays };
             let bsdf = self.scene.bsdf(&si);
             if bsdf.is_empty() {
@@ -133,6 +144,7 @@ impl Walks<'_> {
             let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Importance) else {
                 return rays;
             };
+            to.scattered(&sample);
             prefix = prefix.and(sample.event.letter());
             if self.kind == MapKind::Caustic && prefix == Prefix::Diffuse {
                 return rays; // no word (S|G)+ begins so
@@ -140,7 +152,7 @@ impl Walks<'_> {
             class = self.classes.append(class, sample.event.letter());
             events += 1;
             let scattered = self.survive(power, sample.weight, events, first_power, roulette);
-            to.played(scattered.is_some());
+            to.survived(roulette, scattered);
             let Some(scattered) = scattered else {
                 return rays;
             };
@@ -150,6 +162,7 @@ impl Walks<'_> {
                 return rays;
             }
             ray = si.spawn_ray(sample.wi);
+            left = si.departure(sample.wi);
         }
     }
 

@@ -7,9 +7,9 @@
 use super::emission::{EMISSION_DIMENSIONS, Emitted};
 use super::record::{MAX_EVENTS, Photon};
 use super::trace::{MAX_PATH_EVENTS, MapKind, Prefix, Walks, Witness};
-use crate::engine::bsdf::Transport;
+use crate::engine::bsdf::{BsdfSample, Transport};
 use crate::engine::event::{Event, Letter};
-use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
 use crate::engine::media::Draws;
 use crate::engine::path::ClassId;
 use crate::engine::sampling::Sampler;
@@ -33,7 +33,7 @@ impl Walks<'_> {
         let mut power = start.flux * share;
         let first_power = power.max_component();
         let (mut class, mut events, mut prefix) = (ClassId::EMPTY, 0_u32, Prefix::Empty);
-        let mut rays = 0;
+        let (mut rays, mut left) = (0, Departure::NOWHERE);
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let first = EMISSION_DIMENSIONS + VERTEX_DIMENSIONS * events;
@@ -56,7 +56,10 @@ impl Walks<'_> {
                 }
                 Arrival::Escape => (None, None),
             };
-            to.travelled(&ray, si.as_ref());
+            to.travelled(&ray, si.as_ref(), power, class);
+            if let Some(fault) = self.scene.ray_fault(left, si.as_ref()) {
+                to.strayed(fault);
+            }
             let Some(si) = si else { return rays };
             let bsdf = phase.is_none().then(|| self.scene.bsdf(&si));
             let stores = match &bsdf {
@@ -79,6 +82,13 @@ impl Walks<'_> {
             let (wi, weight, letter) = match (&bsdf, phase) {
                 (_, Some(phase)) => {
                     let wi = phase.sample(si.wo, direction);
+                    to.scattered(&BsdfSample {
+                        wi,
+                        weight: flight.weight,
+                        pdf_dir: phase.pdf(si.wo, wi),
+                        event: Event::Volume,
+                        eta: 1.0,
+                    });
                     (wi, flight.weight, Letter::V)
                 }
                 (Some(bsdf), None) => {
@@ -86,6 +96,7 @@ impl Walks<'_> {
                     let Some(sample) = bsdf.sample(si.wo, event, direction, transport) else {
                         return rays;
                     };
+                    to.scattered(&sample);
                     inside = self.scene.beyond(&flight.inside, &si, sample.wi);
                     let weight = flight.weight * sample.weight;
                     (sample.wi, weight, sample.event.letter())
@@ -101,7 +112,9 @@ impl Walks<'_> {
             }
             class = self.classes.append(class, letter);
             events += 1;
-            let Some(scattered) = self.survive(power, weight, events, first_power, roulette) else {
+            let scattered = self.survive(power, weight, events, first_power, roulette);
+            to.survived(roulette, scattered);
+            let Some(scattered) = scattered else {
                 return rays;
             };
             power = scattered;
@@ -110,6 +123,7 @@ impl Walks<'_> {
                 return rays;
             }
             ray = si.spawn_ray(wi);
+            left = si.departure(wi);
         }
     }
 }

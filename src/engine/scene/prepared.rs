@@ -4,7 +4,7 @@ use super::desc::CameraDesc;
 use super::features::SceneFeatures;
 use super::material::Material;
 use crate::engine::bsdf::Bsdf;
-use crate::engine::geometry::{Geometry, Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Geometry, Ray, RayFault, SurfaceInteraction};
 use crate::engine::light::{LightSample, Lights};
 use crate::engine::media::Media;
 
@@ -38,6 +38,19 @@ pub struct Scene {
 const MAX_CROSSINGS: u32 = 10_000;
 
 impl Scene {
+    /// What is wrong with how a ray ended that left a surface at `left`: at `si`, or outside the
+    /// scene.
+    #[inline]
+    pub fn ray_fault(&self, left: Departure, si: Option<&SurfaceInteraction>) -> Option<RayFault> {
+        match si {
+            Some(si) if si.prim != left.prim || si.is_in_volume() => None,
+            Some(si) => self.geometry.self_hit(left, si),
+            // A ray may leave by a surface that lets it pass.
+            None if self.features.opacity => None,
+            None => self.geometry.missed_edge(left),
+        }
+    }
+
     /// The first surface along `ray` that stops it. Where surfaces have an opacity, it decides by
     /// `number` (called at most once) whether the ray meets them; crossing one is no event.
     #[inline]

@@ -9,7 +9,9 @@ use super::clock::RenderClock;
 use super::job::{RenderJob, Settings};
 use crate::engine::camera::Camera;
 use crate::engine::film::{ErrorEstimate, Film, Frame, Memory};
-use crate::engine::integrators::{Cancel, Cancelled, Integrator, Params, Pass, RenderStats};
+use crate::engine::integrators::{
+    Cancel, Cancelled, Integrator, Params, Pass, Recording, RenderStats, ReplayError, SampleId,
+};
 use crate::engine::path::ExpressionError;
 use crate::engine::plan::RenderPlan;
 use crate::engine::scene::Scene;
@@ -99,6 +101,36 @@ impl Renderer {
         };
         self.stats += self.integrator.render_pass(&pass, &mut self.film)?;
         Ok(())
+    }
+
+    /// Computes one sample of this job again and writes its steps down.
+    ///
+    /// # Errors
+    /// Why it cannot, in one sentence; [`ReplayError::Cancelled`] if `cancel` says so.
+    pub fn replay(
+        &mut self,
+        sample: &SampleId,
+        cancel: &Cancel,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError> {
+        if let SampleId::Camera { pixel, .. } = sample
+            && pixel.cmpge(self.size).any()
+        {
+            let (x, y, size) = (pixel.x, pixel.y, self.size);
+            return Err(ReplayError::Cannot(format!(
+                "a picture of {}x{} pixels has no pixel {x},{y}",
+                size.x, size.y
+            )));
+        }
+        let pass = Pass {
+            scene: &self.scene,
+            camera: &self.camera,
+            plan: &self.plan,
+            seed: self.settings.seed,
+            index: sample.pass(),
+            cancel,
+        };
+        self.integrator.replay(&pass, sample, to)
     }
 
     /// A picture of one sample a pixel at 1 / `divisor` of the resolution. It does not enter the

@@ -144,19 +144,57 @@ fn time_to(frame: &Frame, target: f64) -> String {
 }
 
 fn faults(ui: &mut Ui, frame: &Frame) {
-    let count = frame.stats.non_finite.to_string();
-    let doc = "Samples whose radiance was NaN or infinite: counted, never averaged in.";
-    figure(ui, "Not finite", count, doc);
-    if let Some(first) = frame.stats.first_non_finite {
-        let text = format!(
-            "pixel {} {}, pass {}",
-            first.pixel.x, first.pixel.y, first.pass
-        );
-        figure(ui, "First of them", text, "Where it can be computed again.");
+    let stats = &frame.stats;
+    for (name, count, doc) in [
+        (
+            "Not a number",
+            stats.faults.nan,
+            "Samples whose radiance was NaN: counted, never averaged in.",
+        ),
+        (
+            "Infinite",
+            stats.faults.infinite,
+            "Samples whose radiance was infinite: counted, never averaged in.",
+        ),
+        (
+            "Negative",
+            stats.faults.negative,
+            "Samples with a channel below zero, which no light has. They count.",
+        ),
+        (
+            "Self-hits",
+            stats.self_hits,
+            "Rays that met the very surface that they left.",
+        ),
+        (
+            "Missed edges",
+            stats.missed_edges,
+            "Rays that left the scene from within a sphere or a closed mesh (of scenes up to 65 536 \
+             triangles): they slipped through an edge.",
+        ),
+        (
+            "Cut paths",
+            stats.cut_paths,
+            "Paths that reached the largest number of events a path may have.",
+        ),
+        (
+            "Below the horizon",
+            stats.below_horizon,
+            "Microfacet samples that point into the surface: no error, they carry no light.",
+        ),
+    ] {
+        figure(ui, name, count.to_string(), doc);
     }
-    let cut = frame.stats.cut_paths.to_string();
-    let doc = "Paths that reached the largest number of events a path may have.";
-    figure(ui, "Cut paths", cut, doc);
+    if let Some(first) = stats.bad_samples().next() {
+        let (stream, id) = (first.id.stream_name(), first.id);
+        let text = format!("{stream} {id}");
+        let doc = format!(
+            "{}; `lightscope replay` with --stream {stream} --index {id} and the settings of this \
+             render follows it again.",
+            first.what
+        );
+        figure(ui, "First error", text, &doc);
+    }
 }
 
 /// Memory by purpose; what takes none is left out.

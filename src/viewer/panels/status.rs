@@ -71,7 +71,10 @@ fn warnings(ui: &mut Ui, workspace: &Workspace) {
     };
     let stats = &frame.stats;
     for (count, what) in [
-        (stats.non_finite, "samples that are no numbers"),
+        (stats.non_finite(), "samples that are no numbers"),
+        (stats.faults.negative, "negative samples"),
+        (stats.self_hits, "self-hits"),
+        (stats.missed_edges, "missed edges"),
         (stats.cut_paths, "cut paths"),
     ] {
         if count > 0 {

@@ -32,6 +32,8 @@ pub struct Technique {
 
 /// Where contributions go: the unweighted one, and its weight.
 pub trait Sink {
+    /// A camera sample begins with `ray`, at the film position `film`.
+    fn begin(&mut self, _film: Vec2, _ray: &Ray) {}
     /// A path that ends on the pixel whose sample is being taken.
     fn add(&mut self, technique: Technique, class: ClassId, value: Rgb, weight: f32);
     /// A path that ends at the film position `film`.

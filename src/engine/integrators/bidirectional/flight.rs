@@ -14,7 +14,7 @@ pub(super) struct Landing {
     pub met: Option<(SurfaceInteraction, Option<Phase>)>,
     /// Radiance of media on the way.
     pub emitted: Rgb,
-    /// See [`Vertex::key`].
+    /// See [`super::Vertex::key`].
     pub key: u64,
 }
 

@@ -7,7 +7,7 @@ use super::vertex::Vertex;
 use super::weight::Density;
 use crate::engine::bsdf::{Bsdf, BsdfSample, Transport};
 use crate::engine::event::Event;
-use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::EmissionSample;
 use crate::engine::math::Rgb;
@@ -256,6 +256,10 @@ impl Walker<'_> {
                 Transport::Radiance => stats.ray_at(events as u32),
                 Transport::Importance => stats.light_ray_at(events as u32),
             }
+            let left = path
+                .vertices
+                .last()
+                .map_or(Departure::NOWHERE, |last| last.si.departure(flight.ray.d));
             let (si, phase, key) = if self.cx.plan.features.media {
                 let (class, before) = (flight.class, flight.throughput);
                 let fly = self.fly(&mut flight, first, sampler, stats);
@@ -264,7 +268,10 @@ impl Walker<'_> {
                 }
                 match fly.met {
                     Some((si, phase)) => (si, phase, fly.key),
-                    None => return Some(flight),
+                    None => {
+                        stats.count_ray_fault(self.cx.scene.ray_fault(left, None));
+                        return Some(flight);
+                    }
                 }
             } else {
                 let opacity_number = || {
@@ -273,9 +280,13 @@ impl Walker<'_> {
                 };
                 match self.cx.scene.intersect(&flight.ray, opacity_number) {
                     Some(si) => (si, None, 0),
-                    None => return Some(flight),
+                    None => {
+                        stats.count_ray_fault(self.cx.scene.ray_fault(left, None));
+                        return Some(flight);
+                    }
                 }
             };
+            stats.count_ray_fault(self.cx.scene.ray_fault(left, Some(&si)));
             let own = match (path.vertices.last(), origin) {
                 (Some(last), _) => area_density(flight.pdf_dir, last.si.p, &si),
                 (None, Origin::Lens(p)) => area_density(flight.pdf_dir, p, &si),

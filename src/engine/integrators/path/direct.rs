@@ -5,10 +5,11 @@ use glam::Vec2;
 use super::walk::Walk;
 use super::{Mode, PathTracer};
 use crate::engine::bsdf::{Bsdf, Transport};
-use crate::engine::film::SampleRadiance;
 use crate::engine::geometry::SurfaceInteraction;
+use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
+use crate::engine::math::Rgb;
 use crate::engine::sampling::{Sampler, mis};
 
 /// The point `u` of the square for light number `i`, where one point serves all lights: turned by
@@ -32,7 +33,7 @@ impl PathTracer {
         si: &SurfaceInteraction,
         bsdf: &Bsdf,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let lights = &cx.scene.lights;
@@ -42,6 +43,7 @@ impl PathTracer {
                 return;
             };
             if let Some(sample) = lights.get(id).sample_li(si.p, u) {
+                out.note(|| Step::shadow_ray(id, pmf, &sample));
                 self.add_light_sample(cx, walk, si, bsdf, &sample, pmf, out, stats);
             }
             return;
@@ -49,6 +51,7 @@ impl PathTracer {
         // One point of the square serves all lights, turned by a number of each light's own.
         for (i, light) in lights.as_slice().iter().enumerate() {
             if let Some(sample) = light.sample_li(si.p, turned(u, i)) {
+                out.note(|| Step::shadow_ray(i as u32, 1.0, &sample));
                 self.add_light_sample(cx, walk, si, bsdf, &sample, 1.0, out, stats);
             }
         }
@@ -65,7 +68,7 @@ impl PathTracer {
         bsdf: &Bsdf,
         light: &LightSample,
         pmf: f32,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let light_pdf = pmf * light.pdf_dir;
@@ -92,6 +95,14 @@ impl PathTracer {
             } else {
                 mis::power(light_pdf, bsdf.pdf(event, si.wo, light.wi))
             };
+            out.note(|| Step::Found {
+                event: Some(event),
+                light: None,
+                pdf_light: Some(light_pdf),
+                pdf_walk: Some(bsdf.pdf(event, si.wo, light.wi)),
+                weight,
+                visible: Rgb::splat(visible),
+            });
             out.add(class, incident * f_cos * (weight * visible));
         }
     }

@@ -7,9 +7,10 @@ use glam::Vec3A;
 
 use super::walk::Walk;
 use crate::engine::bsdf::{Bsdf, Transport};
-use crate::engine::film::SampleRadiance;
+
 use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::integrators::Pass;
+use crate::engine::integrators::replay::RadianceSink;
 use crate::engine::math::Rgb;
 use crate::engine::media::{Draws, Inside};
 use crate::engine::sampling::mis;
@@ -47,7 +48,7 @@ pub(super) fn at_surface(
     walk: &Walk,
     (si, bsdf, inside): (&SurfaceInteraction, &Bsdf, &Inside),
     draws: &mut Draws,
-    out: &mut SampleRadiance<'_>,
+    out: &mut impl RadianceSink,
 ) {
     let Some((d, pdf)) = cx.scene.media.glow.sample_dir(si.p, draws) else {
         return;

@@ -9,12 +9,14 @@
 
 mod direct;
 mod equiangular;
+mod gather;
 mod glow;
+mod part;
 mod volume;
 mod walk;
 
 pub(super) use direct::turned;
-pub(super) use volume::Gather;
+pub(super) use gather::Gather;
 pub(super) use walk::Walk;
 
 use super::tiled::{SamplerKind, Tiled};

@@ -3,24 +3,25 @@
 //! Flights end at surfaces or at places where a medium scatters (V). Light is found at both by
 //! shadow rays and by the walk itself, weighed by their densities of directions; transmittance
 //! divides the throughput and enters no weight (CONTRACT rule 6). On each flight light is looked for
-//! at one more place ([`Equiangular`]); it and the place where the flight is scattered share what
+//! at one more place ([`super::equiangular`]); it and the place where the flight is scattered share what
 //! they find by their densities of distances.
 
 use glam::{Vec2, Vec3A};
 
-use super::equiangular::Equiangular;
+use super::gather::Gather;
 use super::glow;
+use super::part::Part;
 use super::walk::{MAX_EVENTS, Walk};
 use super::{Mode, PathTracer, turned};
 use crate::engine::bsdf::{Bsdf, Transport};
 use crate::engine::event::{Event, Letter};
-use crate::engine::film::SampleRadiance;
 use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::integrators::tiled::CAMERA_DIMENSIONS;
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
 use crate::engine::math::Rgb;
-use crate::engine::media::{Draws, Inside, Medium};
+use crate::engine::media::{Draws, Inside};
 use crate::engine::path::ClassId;
 use crate::engine::sampling::{Sampler, mis};
 use crate::engine::scene::{Arrival, Flight, Scene, Span, VolumePoint};
@@ -29,38 +30,13 @@ use crate::engine::scene::{Arrival, Flight, Scene, Span, VolumePoint};
 /// 4–6, channel and distance 8–9, seeds of the flight 10–11, equiangular 12–15.
 const VERTEX_DIMENSIONS: u32 = 16;
 
-/// What looks for light beside shadow rays, where a walk is to end at its first diffuse event or at
-/// the first place where a medium scatters it.
-pub(in crate::engine::integrators) trait Gather {
-    /// Whether there is such a thing: else the walk goes on.
-    const ENDS: bool;
-    /// Light at a part of a flight within a medium; `walk` stands at the flight's begin.
-    fn along(&mut self, _walk: &Walk, _span: &Span<'_>, _out: &mut SampleRadiance<'_>) {}
-    /// Light that the medium scatters at `point`; the collision is in `walk` already.
-    fn at_volume(&mut self, _walk: &Walk, _point: &VolumePoint, _out: &mut SampleRadiance<'_>) {}
-    /// Light at the diffuse event of a surface.
-    fn at_surface(
-        &mut self,
-        _walk: &Walk,
-        _si: &SurfaceInteraction,
-        _bsdf: &Bsdf,
-        _out: &mut SampleRadiance<'_>,
-    ) {
-    }
-}
-
-/// Path tracing goes on to the end.
-impl Gather for () {
-    const ENDS: bool = false;
-}
-
 /// All that a walk works with.
-pub(super) struct VolumeWalk<'a, 'b, S, G> {
+pub(super) struct VolumeWalk<'a, S, G, O> {
     gather: &'a mut G,
     tracer: &'a PathTracer,
     cx: &'a Pass<'a>,
     sampler: &'a mut S,
-    out: &'a mut SampleRadiance<'b>,
+    out: &'a mut O,
     stats: &'a mut RenderStats,
     walk: Walk,
     ray: Ray,
@@ -72,41 +48,6 @@ pub(super) struct VolumeWalk<'a, 'b, S, G> {
     ends: bool,
 }
 
-/// The part of a flight on which light is looked for at one more place: the first in a homogeneous
-/// medium.
-struct Part<'a> {
-    medium: &'a Medium,
-    ray: Ray,
-    range: (f32, f32),
-    /// Throughput where it begins.
-    beta: Rgb,
-    inside: Inside,
-    /// Its number among those of the flight.
-    number: u32,
-}
-
-impl Part<'_> {
-    /// Density of the distance `t` as tracking draws it, 1/m.
-    fn pdf_tracked(&self, t: f32) -> f32 {
-        self.medium.pdf_distance(t - self.range.0, self.beta)
-    }
-
-    fn equiangular(&self, cx: &Pass<'_>, light: u32) -> Option<Equiangular> {
-        let sigmas = self.medium.sigma_t.to_array().into_iter();
-        let least = sigmas.filter(|s| *s > 0.0).fold(f32::INFINITY, f32::min);
-        let light = cx.scene.lights.get(light);
-        Equiangular::new(light, &self.ray, self.range, least)
-    }
-
-    /// Weight of light that is found where tracking scattered at the distance `t`.
-    fn tracked_share(&self, cx: &Pass<'_>, light: u32, t: f32) -> f32 {
-        match self.equiangular(cx, light) {
-            Some(e) => mis::power(self.pdf_tracked(t), e.pdf(t)),
-            None => 1.0,
-        }
-    }
-}
-
 impl PathTracer {
     /// As `radiance`, in scenes with media.
     pub(super) fn radiance_in_media<S: Sampler>(
@@ -114,7 +55,7 @@ impl PathTracer {
         cx: &Pass<'_>,
         ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         self.gather_in_media(cx, ray, sampler, &mut (), out, stats);
@@ -127,7 +68,7 @@ impl PathTracer {
         ray: Ray,
         sampler: &mut S,
         gather: &mut G,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let mut walk = VolumeWalk {
@@ -147,7 +88,7 @@ impl PathTracer {
     }
 }
 
-impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
+impl<'a, S: Sampler, G: Gather, O: RadianceSink> VolumeWalk<'a, S, G, O> {
     /// A flight and the event at its end; None if the walk ends.
     fn step(&mut self) -> Option<()> {
         // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
@@ -190,6 +131,8 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
             }
             Arrival::Surface(si) => {
                 let (cx, walk) = (self.cx, &self.walk);
+                self.out
+                    .note(|| Step::vertex(si, walk.throughput, walk.suffix));
                 self.tracer.add_emitted(cx, walk, si, self.out);
                 if ends {
                     return None;
@@ -197,6 +140,10 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
                 self.scatter_at_surface(si, &flight.inside, &mut shadow)?;
             }
             Arrival::Volume(point) => {
+                let (walk, t) = (&self.walk, flight.t);
+                let (value, class) = (walk.throughput, walk.suffix);
+                self.out
+                    .note(|| Step::volume(point.p, point.wo, t, value, class));
                 if ends {
                     return None;
                 }
@@ -231,6 +178,9 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
             && self
                 .walk
                 .survives(self.tracer.roulette, roulette, self.stats);
+        let throughput = self.walk.throughput;
+        self.out
+            .note(|| Step::roulette(roulette, goes_on, throughput));
         goes_on.then_some(())
     }
 
@@ -263,6 +213,14 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         };
         let (scene, ray): (&'a Scene, Ray) = (self.cx.scene, self.ray);
         let flight = scene.fly(ray, self.inside, beta, &mut draws, on_span);
+        let met = match &flight.arrival {
+            Arrival::Surface(si) => Some(si),
+            Arrival::Escape | Arrival::Volume(_) => None,
+        };
+        if !matches!(flight.arrival, Arrival::Volume(_)) {
+            let fault = scene.ray_fault(self.walk.departure(), met);
+            self.stats.count_ray_fault(fault);
+        }
         // The flight's first ray is counted by its level already.
         self.stats.rays += draws.rays - 1;
         self.stats.exceeded_majorants += draws.exceeded;
@@ -286,7 +244,7 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
 
     /// The light to be sampled, or in mode `kajiya` every one: index, probability of the choice, and
     /// where on it.
-    fn light_choices(&mut self) -> impl Iterator<Item = (u32, f32, Vec2)> + use<'a, S, G> {
+    fn light_choices(&mut self) -> impl Iterator<Item = (u32, f32, Vec2)> + use<'a, S, G, O> {
         self.sampler.seek(self.first + 4);
         let (u, choice) = (self.sampler.next_2d(), self.sampler.next_1d());
         let lights = &self.cx.scene.lights;
@@ -322,6 +280,7 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         if self.tracer.sends_shadow_rays(self.cx) && bsdf.has_non_delta() {
             for (id, pmf, u) in self.light_choices() {
                 if let Some(light) = self.sample_light(id, si.p, u) {
+                    self.out.note(|| Step::shadow_ray(id, pmf, &light));
                     self.light_surface(si, &bsdf, inside, &light, pmf, shadow);
                 }
             }
@@ -337,8 +296,11 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         let (direction, event) = (self.sampler.next_2d(), self.sampler.next_1d());
         let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Radiance) else {
             self.stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
+            self.out
+                .note(|| Step::ended("no direction was drawn: below the horizon, or no event"));
             return None;
         };
+        self.out.note(|| Step::scattered(&sample));
         let letter = sample.event.letter();
         if G::ENDS && letter == Letter::D {
             return None;
@@ -389,6 +351,14 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
             } else {
                 self.light_weight(light, light_pdf, pdf)
             };
+            self.out.note(|| Step::Found {
+                event: Some(event),
+                light: None,
+                pdf_light: Some(light_pdf),
+                pdf_walk: Some(pdf),
+                weight,
+                visible,
+            });
             self.out.add(class, incident * f_cos * visible * weight);
         }
     }
@@ -417,6 +387,7 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
             let Some(light) = self.sample_light(id, point.p, u) else {
                 continue;
             };
+            self.out.note(|| Step::shadow_ray(id, pmf, &light));
             let share = part.map_or(1.0, |part| part.tracked_share(self.cx, id, t));
             let value = self.volume_light(point, &inside, &light, pmf, shadow);
             self.out.add(class, self.walk.throughput * value * share);
@@ -471,6 +442,10 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         if throughput.is_black() {
             return;
         }
+        self.out.note(|| Step::Read {
+            from: "one more place of the way, drawn near a light",
+        });
+        self.out.note(|| Step::shadow_ray(id, pmf, &light));
         let value = self.volume_light(&point, &part.inside, &light, pmf, shadow);
         self.count(shadow);
         self.out.add(class, throughput * value);
@@ -481,6 +456,12 @@ impl<'a, S: Sampler, G: Gather> VolumeWalk<'a, '_, S, G> {
         self.sampler.seek(self.first);
         let d = point.phase.sample(point.wo, self.sampler.next_2d());
         let pdf = point.phase.pdf(point.wo, d);
+        self.out.note(|| Step::Scattered {
+            event: Event::Volume,
+            wi: d,
+            pdf_dir: pdf,
+            weight: Some(Rgb::WHITE),
+        });
         self.walk = self.walk.after_volume(point.p, pdf, class);
         self.ray = Ray::new(point.p, d);
     }

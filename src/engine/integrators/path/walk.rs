@@ -5,8 +5,8 @@ use glam::Vec3A;
 use super::{Mode, PathTracer};
 use crate::engine::bsdf::{BsdfSample, Transport};
 use crate::engine::event::Event;
-use crate::engine::film::SampleRadiance;
-use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
+use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::integrators::tiled::{CAMERA_DIMENSIONS, RayIntegrator};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::math::Rgb;
@@ -64,6 +64,7 @@ impl Walk {
                 p: si.p,
                 event: sample.event,
                 pdf_dir: sample.pdf_dir,
+                departure: si.departure(sample.wi),
             }),
         }
     }
@@ -80,6 +81,7 @@ impl Walk {
                 p,
                 event: Event::Volume,
                 pdf_dir,
+                departure: Departure::NOWHERE,
             }),
         }
     }
@@ -89,6 +91,26 @@ impl Walk {
     pub(super) fn last_found(&self) -> Option<(Vec3A, f32)> {
         let last = self.last.as_ref().filter(|last| !last.event.is_delta());
         last.map(|last| (last.p, last.pdf_dir))
+    }
+
+    /// Where the ray under way left a surface.
+    pub fn departure(&self) -> Departure {
+        self.last
+            .as_ref()
+            .map_or(Departure::NOWHERE, |last| last.departure)
+    }
+
+    /// That it met the light `id`, for those who listen; `light_pdf` is the density of shadow rays.
+    fn met(&self, id: u32, weight: f32, light_pdf: impl FnOnce(Vec3A) -> f32) -> Step {
+        let last = self.last.as_ref().filter(|last| !last.event.is_delta());
+        Step::Found {
+            light: Some(id),
+            event: None,
+            pdf_light: last.map(|last| light_pdf(last.p)),
+            pdf_walk: last.map(|last| last.pdf_dir),
+            weight,
+            visible: Rgb::WHITE,
+        }
     }
 
     /// Russian roulette after `from` events with the random number `u`; false if the walk ends.
@@ -107,6 +129,7 @@ pub(in crate::engine::integrators) struct Scattered {
     p: Vec3A,
     event: Event,
     pdf_dir: f32,
+    departure: Departure,
 }
 
 impl RayIntegrator for PathTracer {
@@ -115,7 +138,7 @@ impl RayIntegrator for PathTracer {
         cx: &Pass<'_>,
         mut ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         // Scenes without media never come near the code that knows of them.
@@ -130,24 +153,30 @@ impl RayIntegrator for PathTracer {
 
             // The next surface, or the sky.
             stats.ray_at(walk.depth);
-            let Some(si) = cx.scene.intersect(&ray, || opacity_number(sampler, first)) else {
+            let hit = cx.scene.intersect(&ray, || opacity_number(sampler, first));
+            stats.count_ray_fault(cx.scene.ray_fault(walk.departure(), hit.as_ref()));
+            let Some(si) = hit else {
                 self.add_escaped(cx, &walk, &ray, out);
                 return;
             };
+            out.note(|| Step::vertex(&si, walk.throughput, walk.suffix));
 
             // Light that the walk met by itself.
             self.add_emitted(cx, &walk, &si, out);
             if cx.plan.max_depth.is_some_and(|max| walk.depth >= max) {
+                out.note(|| Step::ended("it has as many events as a path may have"));
                 return;
             }
             if walk.depth >= MAX_EVENTS {
                 stats.cut_paths += 1;
+                out.note(|| Step::ended("it was cut at the largest number of events"));
                 return;
             }
 
             // Light found by shadow rays.
             let bsdf = cx.scene.bsdf(&si);
             if bsdf.is_empty() {
+                out.note(|| Step::ended("the surface scatters nothing"));
                 return;
             }
             if self.sends_shadow_rays(cx) && bsdf.has_non_delta() {
@@ -161,15 +190,20 @@ impl RayIntegrator for PathTracer {
                 (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
             let Some(sample) = bsdf.sample(si.wo, event, direction, Transport::Radiance) else {
                 stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
+                out.note(|| Step::ended("no direction was drawn: below the horizon, or no event"));
                 return;
             };
+            out.note(|| Step::scattered(&sample));
             let suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
             walk = walk.after(&si, &sample, suffix, 1.0);
             if cx.plan.is_pointless(walk.suffix) {
+                out.note(|| Step::ended("no layer that is asked for has such a word"));
                 return;
             }
 
-            if !walk.survives(self.roulette, roulette, stats) {
+            let survived = walk.survives(self.roulette, roulette, stats);
+            out.note(|| Step::roulette(roulette, survived, walk.throughput));
+            if !survived {
                 return;
             }
             ray = si.spawn_ray(sample.wi);
@@ -209,7 +243,7 @@ impl PathTracer {
         cx: &Pass<'_>,
         walk: &Walk,
         si: &SurfaceInteraction,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
     ) {
         let Some(id) = si.light else { return };
         let lights = &cx.scene.lights;
@@ -218,9 +252,9 @@ impl PathTracer {
         if emitted.is_black() {
             return;
         }
-        let weight = self.hit_weight(walk.last.as_ref(), |p| {
-            lights.pmf(id) * light.pdf_li(p, -si.wo, Some(si))
-        });
+        let light_pdf = |p| lights.pmf(id) * light.pdf_li(p, -si.wo, Some(si));
+        let weight = self.hit_weight(walk.last.as_ref(), light_pdf);
+        out.note(|| walk.met(id, weight, light_pdf));
         out.add(walk.suffix, walk.throughput * emitted * weight);
     }
 
@@ -230,14 +264,15 @@ impl PathTracer {
         cx: &Pass<'_>,
         walk: &Walk,
         ray: &Ray,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
     ) {
+        out.note(|| Step::Escaped { d: ray.d });
         let lights = &cx.scene.lights;
         for &id in lights.environments() {
             let light = lights.get(id);
-            let weight = self.hit_weight(walk.last.as_ref(), |p| {
-                lights.pmf(id) * light.pdf_li(p, ray.d, None)
-            });
+            let light_pdf = |p| lights.pmf(id) * light.pdf_li(p, ray.d, None);
+            let weight = self.hit_weight(walk.last.as_ref(), light_pdf);
+            out.note(|| walk.met(id, weight, light_pdf));
             out.add(walk.suffix, walk.throughput * light.escaped(ray.d) * weight);
         }
     }

@@ -5,9 +5,10 @@ use glam::Vec3A;
 use super::walk::{Estimator, Walk};
 use crate::engine::bsdf::{Bsdf, Transport};
 use crate::engine::event::Event;
-use crate::engine::film::SampleRadiance;
-use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
+use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::integrators::{Pass, RenderStats};
+use crate::engine::math::Rgb;
 use crate::engine::sampling::{Sampler, mis};
 
 /// The last event of a walk.
@@ -18,6 +19,8 @@ pub(super) struct Scattered {
     pub event: Event,
     /// P(event) · p_event, 1/sr.
     pub pdf_dir: f32,
+    /// Where the ray left the surface.
+    pub departure: Departure,
 }
 
 impl Estimator {
@@ -35,7 +38,7 @@ impl Estimator {
         si: &SurfaceInteraction,
         bsdf: &Bsdf,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let lights = &cx.scene.lights;
@@ -46,6 +49,7 @@ impl Estimator {
         let Some(light) = lights.get(id).sample_li(si.p, u) else {
             return;
         };
+        out.note(|| Step::shadow_ray(id, pmf, &light));
         let light_pdf = pmf * light.pdf_dir;
         let incident = walk.throughput * light.radiance * (1.0 / light_pdf);
         let mut visibility = None;
@@ -67,6 +71,14 @@ impl Estimator {
             } else {
                 mis::power(light_pdf, bsdf.pdf(event, si.wo, light.wi))
             };
+            out.note(|| Step::Found {
+                event: Some(event),
+                light: None,
+                pdf_light: Some(light_pdf),
+                pdf_walk: Some(bsdf.pdf(event, si.wo, light.wi)),
+                weight,
+                visible: Rgb::splat(visible),
+            });
             out.add(class, incident * f_cos * (weight * visible));
         }
     }
@@ -77,7 +89,7 @@ impl Estimator {
         cx: &Pass<'_>,
         walk: &Walk,
         si: &SurfaceInteraction,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
     ) {
         let Some(id) = si.light else { return };
         let lights = &cx.scene.lights;
@@ -86,9 +98,9 @@ impl Estimator {
         if emitted.is_black() {
             return;
         }
-        let weight = hit_weight(walk.last.as_ref(), |p| {
-            lights.pmf(id) * light.pdf_li(p, -si.wo, Some(si))
-        });
+        let light_pdf = |p| lights.pmf(id) * light.pdf_li(p, -si.wo, Some(si));
+        let weight = hit_weight(walk.last.as_ref(), light_pdf);
+        out.note(|| met(walk, id, weight, light_pdf));
         out.add(walk.suffix, walk.throughput * emitted * weight);
     }
 
@@ -98,14 +110,15 @@ impl Estimator {
         cx: &Pass<'_>,
         walk: &Walk,
         ray: &Ray,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
     ) {
+        out.note(|| Step::Escaped { d: ray.d });
         let lights = &cx.scene.lights;
         for &id in lights.environments() {
             let light = lights.get(id);
-            let weight = hit_weight(walk.last.as_ref(), |p| {
-                lights.pmf(id) * light.pdf_li(p, ray.d, None)
-            });
+            let light_pdf = |p| lights.pmf(id) * light.pdf_li(p, ray.d, None);
+            let weight = hit_weight(walk.last.as_ref(), light_pdf);
+            out.note(|| met(walk, id, weight, light_pdf));
             out.add(walk.suffix, walk.throughput * light.escaped(ray.d) * weight);
         }
     }
@@ -117,5 +130,18 @@ fn hit_weight(last: Option<&Scattered>, light_pdf: impl FnOnce(Vec3A) -> f32) ->
     match last {
         Some(last) if !last.event.is_delta() => mis::power(last.pdf_dir, light_pdf(last.p)),
         _ => 1.0,
+    }
+}
+
+/// That the walk met the light `id`, for those who listen.
+fn met(walk: &Walk, id: u32, weight: f32, light_pdf: impl FnOnce(Vec3A) -> f32) -> Step {
+    let last = walk.last.as_ref().filter(|last| !last.event.is_delta());
+    Step::Found {
+        event: None,
+        light: Some(id),
+        pdf_light: last.map(|last| light_pdf(last.p)),
+        pdf_walk: last.map(|last| last.pdf_dir),
+        weight,
+        visible: Rgb::WHITE,
     }
 }

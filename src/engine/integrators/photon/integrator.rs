@@ -6,8 +6,12 @@ use super::params::{Indirect, PhotonSettings};
 use super::view::PhotonView;
 use super::walk::Estimator;
 use crate::engine::film::Film;
+use crate::engine::integrators::stats::ERRORS;
 use crate::engine::integrators::tiled::{SamplerKind, Tiled};
-use crate::engine::integrators::{Cancelled, Fact, Integrator, Params, Pass, RenderStats};
+use crate::engine::integrators::{
+    BadSample, Cancelled, Fact, Integrator, Params, Pass, Recording, RenderStats, ReplayError,
+    SampleId,
+};
 use crate::engine::photon::irradiance_cache::IrradianceCache;
 use crate::engine::photon::{MapKind, MapsSettings, PhotonMap, PhotonMaps};
 use crate::engine::scene::desc::CameraDesc;
@@ -165,7 +169,18 @@ fn build_maps(
 ) -> Result<PhotonMaps, Cancelled> {
     let check = || cx.cancel.check();
     let maps = PhotonMaps::build(cx.scene, &cx.plan.classes, &key.settings, &check)?;
-    for counts in maps.counts() {
+    for map in maps.iter() {
+        let counts = &map.counts;
+        stats.faults += counts.faults;
+        stats.self_hits += counts.strayed[0];
+        stats.missed_edges += counts.strayed[1];
+        if let Some((number, what)) = counts.first_bad {
+            let (map, pass) = (map.kind, cx.index);
+            stats.keep(BadSample {
+                id: SampleId::Photon { map, number, pass },
+                what: ERRORS[what],
+            });
+        }
         stats.rays += counts.rays - counts.levels.iter().sum::<u64>();
         stats.add_light_rays(&counts.levels);
         stats.add_games(counts.roulette[0], counts.roulette[1]);
@@ -228,6 +243,21 @@ impl Integrator for PhotonMapper {
         self.prepare(cx, &mut stats)?;
         stats += self.tiled.render_pass(cx, film)?;
         Ok(stats)
+    }
+
+    fn replay(
+        &mut self,
+        cx: &Pass<'_>,
+        sample: &SampleId,
+        to: &mut Recording,
+    ) -> Result<(), ReplayError> {
+        self.prepare(cx, &mut RenderStats::default())?;
+        let SampleId::Photon { map, number, .. } = *sample else {
+            return self.tiled.replay(cx, sample, to);
+        };
+        let view = PhotonView::new(self.tiled.estimator());
+        view.follow(cx.scene, &cx.plan.classes, map, number, to)
+            .map_err(ReplayError::Cannot)
     }
 
     fn update(&mut self, params: &Params) -> bool {

@@ -10,6 +10,7 @@ use crate::engine::math::Rgb;
 use crate::engine::path::PathClasses;
 use crate::engine::photon::emission::Emission;
 use crate::engine::photon::irradiance_cache::IrradianceCache;
+use crate::engine::photon::trace::Witness;
 use crate::engine::photon::{
     Disc, MapKind, Nearest, PhotonMap, PhotonMaps, PhotonPath, ProjectionMap, Weighed,
 };
@@ -69,15 +70,40 @@ impl PhotonView {
         let (Some(map), Some(settings)) = (self.map(kind), self.0.settings) else {
             return Vec::new();
         };
-        let emission = match kind {
-            MapKind::Caustic => Emission::aimed(scene, ProjectionMap::new(scene)),
-            MapKind::Global | MapKind::Volume => Some(Emission::Everywhere),
-        };
         let (seed, index) = self.0.numbers;
         let range = range.start..range.end.min(map.counts.emitted);
-        emission.map_or_else(Vec::new, |emission| {
+        emission(scene, kind).map_or_else(Vec::new, |emission| {
             map.paths(scene, classes, &emission, &settings.map(seed, index), range)
         })
+    }
+
+    /// Follows photon `number` of a map once more and tells `to` of its way.
+    ///
+    /// # Errors
+    /// One sentence, if there is no such photon.
+    pub fn follow(
+        &self,
+        scene: &Scene,
+        classes: &PathClasses,
+        kind: MapKind,
+        number: u64,
+        to: &mut impl Witness,
+    ) -> Result<(), String> {
+        let map = self.map(kind).zip(self.0.settings);
+        let Some(((map, settings), emission)) = map.zip(emission(scene, kind)) else {
+            return Err("that photon map was not built: nothing in this scene reads it".to_owned());
+        };
+        let emitted = map.counts.emitted;
+        if number >= emitted {
+            return Err(format!(
+                "photon {number} was not emitted: those of this map are 0 to {}",
+                emitted.saturating_sub(1)
+            ));
+        }
+        let (seed, index) = self.0.numbers;
+        let numbers = settings.map(seed, index);
+        map.follow(scene, classes, &emission, &numbers, number, to);
+        Ok(())
     }
 
     /// The estimate of a map at `si` as a render makes it where the eye looks.
@@ -129,6 +155,14 @@ impl PhotonView {
             rays,
             scratch.sums.iter().map(|(_, radiance)| *radiance).sum(),
         )
+    }
+}
+
+/// How the photons of a map were emitted.
+fn emission(scene: &Scene, kind: MapKind) -> Option<Emission> {
+    match kind {
+        MapKind::Caustic => Emission::aimed(scene, ProjectionMap::new(scene)),
+        MapKind::Global | MapKind::Volume => Some(Emission::Everywhere),
     }
 }
 

@@ -5,9 +5,9 @@
 use super::walk::{Estimator, ROULETTE_EVENTS, Scratch, Walk};
 use crate::engine::bsdf::Bsdf;
 use crate::engine::event::Letter;
-use crate::engine::film::SampleRadiance;
 use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::integrators::path::{Gather, PathTracer, Walk as PathWalk};
+use crate::engine::integrators::replay::RadianceSink;
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
@@ -30,7 +30,7 @@ impl Estimator {
         cx: &Pass<'_>,
         ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let mut reader = Reader {
@@ -70,7 +70,7 @@ impl Reader<'_, '_> {
 impl Gather for Reader<'_, '_> {
     const ENDS: bool = true;
 
-    fn along(&mut self, walk: &PathWalk, span: &Span<'_>, out: &mut SampleRadiance<'_>) {
+    fn along(&mut self, walk: &PathWalk, span: &Span<'_>, out: &mut impl RadianceSink) {
         let medium = span.medium;
         let reads = self.estimator.reads_beams() && medium.is_homogeneous() && medium.scatters();
         let Some(map) = self.estimator.volume_map().filter(|_| reads) else {
@@ -86,7 +86,7 @@ impl Gather for Reader<'_, '_> {
         });
     }
 
-    fn at_volume(&mut self, walk: &PathWalk, point: &VolumePoint, out: &mut SampleRadiance<'_>) {
+    fn at_volume(&mut self, walk: &PathWalk, point: &VolumePoint, out: &mut impl RadianceSink) {
         let along_rays = self.estimator.reads_beams() && point.homogeneous;
         let Some(map) = self.estimator.volume_map().filter(|_| !along_rays) else {
             return;
@@ -115,7 +115,7 @@ impl Gather for Reader<'_, '_> {
         walk: &PathWalk,
         si: &SurfaceInteraction,
         bsdf: &Bsdf,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
     ) {
         let mut ended = Walk::new();
         ended.throughput = walk.throughput;

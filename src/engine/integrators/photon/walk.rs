@@ -6,8 +6,8 @@ use super::direct::Scattered;
 use super::params::{Indirect, PhotonSettings};
 use crate::engine::bsdf::{Bsdf, Lobe, Transport};
 use crate::engine::event::{Event, Letter};
-use crate::engine::film::SampleRadiance;
-use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
+use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::integrators::tiled::{CAMERA_DIMENSIONS, RayIntegrator};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::math::Rgb;
@@ -99,7 +99,7 @@ impl RayIntegrator for Estimator {
         cx: &Pass<'_>,
         mut ray: Ray,
         sampler: &mut S,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         if cx.plan.features.media {
@@ -117,10 +117,17 @@ impl RayIntegrator for Estimator {
 
             // The next surface, or the sky; light that the walk met by itself.
             stats.ray_at(walk.depth);
-            let Some(si) = cx.scene.intersect(&ray, || opacity_number(sampler, first)) else {
+            let hit = cx.scene.intersect(&ray, || opacity_number(sampler, first));
+            let left = walk.last.as_ref().map(|last| last.departure);
+            let fault = cx
+                .scene
+                .ray_fault(left.unwrap_or(Departure::NOWHERE), hit.as_ref());
+            stats.count_ray_fault(fault);
+            let Some(si) = hit else {
                 self.add_escaped(cx, &walk, &ray, out);
                 return;
             };
+            out.note(|| Step::vertex(&si, walk.throughput, walk.suffix));
             self.add_emitted(cx, &walk, &si, out);
             if cx.plan.max_depth.is_some_and(|max| walk.depth >= max) {
                 return;
@@ -150,20 +157,25 @@ impl RayIntegrator for Estimator {
                 stats.below_horizon += u64::from(bsdf.has(Event::Glossy));
                 return;
             };
+            out.note(|| Step::scattered(&sample));
             if sample.event == Event::Diffuse {
+                out.note(|| Step::ended("a diffuse event: photons told what lies behind it"));
                 return;
             }
             walk.throughput *= sample.weight;
             walk.eta2 *= sample.eta * sample.eta;
             walk.suffix = cx.plan.classes.prepend(sample.event.letter(), walk.suffix);
             walk.depth += 1;
-            if cx.plan.is_pointless(walk.suffix) || !walk.survives(roulette, stats) {
+            let goes_on = !cx.plan.is_pointless(walk.suffix) && walk.survives(roulette, stats);
+            out.note(|| Step::roulette(roulette, goes_on, walk.throughput));
+            if !goes_on {
                 return;
             }
             walk.last = Some(Scattered {
                 p: si.p,
                 event: sample.event,
                 pdf_dir: sample.pdf_dir,
+                departure: si.departure(sample.wi),
             });
             ray = si.spawn_ray(sample.wi);
         }
@@ -183,7 +195,7 @@ impl Estimator {
         bsdf: &Bsdf,
         numbers: IndependentSampler,
         scratch: &mut Scratch,
-        out: &mut SampleRadiance<'_>,
+        out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
         let Some(settings) = &self.settings else {
@@ -212,6 +224,9 @@ impl Estimator {
                 scratch,
             );
         }
+        out.note(|| Step::Read {
+            from: "the caustic map",
+        });
         add_all(cx, walk, suffix, &scratch.sums, Rgb::WHITE, out);
         if !settings.global_map && seen_directly {
             return;
@@ -233,6 +248,13 @@ impl Estimator {
                 self.gather(cx, si, bsdf, allowed, numbers, scratch, stats, &mut ());
             }
         }
+        out.note(|| Step::Read {
+            from: match settings.indirect {
+                Indirect::Direct => "the global map",
+                Indirect::Gather => "gather rays",
+                Indirect::Cache => "the irradiance cache, or gather rays",
+            },
+        });
         add_all(cx, walk, suffix, &scratch.sums, white, out);
     }
 
@@ -266,7 +288,7 @@ fn add_all(
     suffix: ClassId,
     sums: &ClassSums,
     factor: Rgb,
-    out: &mut SampleRadiance<'_>,
+    out: &mut impl RadianceSink,
 ) {
     for &(class, radiance) in sums {
         let class = cx.plan.classes.join(class, suffix);

@@ -7,8 +7,8 @@ use crate::engine::film::SplatList;
 use crate::engine::integrators::bdpt::{Bidirectional, Workspace};
 use crate::engine::integrators::bidirectional::{Sink, Technique};
 use crate::engine::integrators::tiled::CAMERA_DIMENSIONS;
-use crate::engine::integrators::{Pass, RenderStats};
-use crate::engine::math::Rgb;
+use crate::engine::integrators::{Pass, RenderStats, SampleId};
+use crate::engine::math::{Fault, FaultCounts, Rgb};
 use crate::engine::path::ClassId;
 use crate::engine::sampling::{IndependentSampler, PrimarySpace, Sampler, StepKey, Stream};
 
@@ -27,14 +27,18 @@ struct Brought {
     film: Vec2,
     /// Sum of the means of the channels: what the chain is distributed by.
     weight: f64,
-    non_finite: u64,
+    faults: FaultCounts,
 }
 
 impl Brought {
     fn push(&mut self, film: Vec2, class: ClassId, value: Rgb) {
-        if !value.is_finite() {
-            self.non_finite += 1;
-        } else if !value.is_black() {
+        if matches!(
+            self.faults.look_at(value),
+            Some(Fault::Nan | Fault::Infinite)
+        ) {
+            return; // left out
+        }
+        if !value.is_black() {
             self.weight += f64::from(value.mean());
             self.paths.push((film, class, value));
         }
@@ -81,7 +85,6 @@ impl Source {
     ) {
         brought.paths.clear();
         brought.weight = 0.0;
-        brought.non_finite = 0;
         let (eye, light) = (&mut numbers.eye, &mut numbers.light);
         eye.seek(0);
         let size = cx.camera.size().as_vec2();
@@ -97,7 +100,7 @@ impl Source {
         stats.samples += 1;
         self.estimator
             .sample(cx, (film, lens), (eye, light), None, work, brought, stats);
-        stats.non_finite += brought.non_finite;
+        stats.faults += std::mem::take(&mut brought.faults);
     }
 
     /// What the bootstrap samples of these numbers bring.
@@ -111,7 +114,9 @@ impl Source {
                 step: 0,
             };
             let mut numbers = Numbers::new(self, cx, origin);
+            let before = stats.errors();
             self.sample(cx, &mut numbers, &mut work, &mut brought, &mut stats);
+            stats.keep_if_bad(&before, || SampleId::Bootstrap { number: item });
             brought.weight
         });
         (weights.collect(), stats)
@@ -178,7 +183,10 @@ impl Chain {
             let large = u.next_1d() < source.large_step;
             self.numbers.eye.propose(key, large);
             self.numbers.light.propose(key, large);
+            let before = stats.errors();
             source.sample(cx, &mut self.numbers, &mut work, &mut proposal, &mut stats);
+            let (chain, step) = (self.id, self.step);
+            stats.keep_if_bad(&before, || SampleId::ChainStep { chain, step });
             if large {
                 brightness.add(Brightness {
                     sum: proposal.weight,
@@ -201,7 +209,7 @@ impl Chain {
             }
         }
         record(&self.state, lasted, splats);
-        stats.non_finite += splats.non_finite;
+        stats.faults += splats.take_faults();
         (brightness, stats)
     }
 }

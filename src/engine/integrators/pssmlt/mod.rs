@@ -19,7 +19,8 @@ use super::bdpt::{Bidirectional, missing as bdpt_missing};
 use super::bidirectional::{Heuristic, Strategies};
 use super::path::ENTRY as PATH;
 use super::{
-    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
+    Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, Recording,
+    RenderStats, ReplayError, SampleId,
 };
 use crate::engine::film::{Film, SplatBuffer, SplatList};
 use crate::engine::math::distribution::Discrete;
@@ -224,6 +225,12 @@ impl Metropolis {
 }
 
 impl Integrator for Metropolis {
+    fn replay(&mut self, _: &Pass<'_>, _: &SampleId, _: &mut Recording) -> Result<(), ReplayError> {
+        let why = "a step of a Markov chain depends on all steps before it, so that none can be \
+                   followed alone; replay the algorithm that it runs over: bdpt, or path";
+        Err(ReplayError::Cannot(why.to_owned()))
+    }
+
     fn memory_bytes(&self) -> usize {
         self.splats.as_ref().map_or(0, SplatBuffer::bytes)
     }
