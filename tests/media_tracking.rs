@@ -345,11 +345,8 @@ fn extreme_extinctions_are_finite() {
         for other in [0.0, 1e-9, 1e9] {
             let sigmas = [sigma, other, sigma];
             let grid = grid([2, 2, 2], 1.0, |_| 1.0);
-            // A dense grid is stepped through; its number of steps is that of the real collisions.
+            // A grid is stepped through; steps are few although one channel's bound is 10³⁰.
             for grid in [None, Some(grid)] {
-                if grid.is_some() && sigma.max(other) > 1e4 && sigma.min(other) < 1e4 {
-                    continue; // one channel meets nothing, the other's bound makes 10⁹ steps
-                }
                 let m = medium(sigmas, [0.5, 1.0, 0.0], grid);
                 for beta in [
                     Rgb::WHITE,
@@ -377,6 +374,11 @@ fn extreme_extinctions_are_finite() {
         let m = medium([sigma; 3], [0.0; 3], None);
         let t = m.transmittance(&slanted(), length, &mut Draws::new([0.5; 2], [0.5; 2]));
         let exact = (-f64::from(sigma)).exp();
-        assert!((f64::from(t[0]) - exact).abs() <= 1e-6 * exact, "{sigma}");
+        // Below 1e-38 numbers lie 2⁻¹⁴⁹ apart.
+        let apart = f64::from(f32::from_bits(1));
+        assert!(
+            (f64::from(t[0]) - exact).abs() <= 1e-6 * exact + apart,
+            "{sigma}"
+        );
     }
 }

@@ -19,6 +19,7 @@ pub struct Majorants {
     values: Vec<f32>,
     min: Vec3A,
     cell: Vec3A,
+    once_a_cell: f32,
 }
 
 impl Majorants {
@@ -60,7 +61,23 @@ impl Majorants {
             values,
             min: bounds.min,
             cell: per_voxel * voxels,
+            once_a_cell: 0.0,
         }
+        .with_rate()
+    }
+
+    fn with_rate(mut self) -> Self {
+        let most = self.values.iter().fold(0.0_f32, |m, v| m.max(*v));
+        if most > 0.0 {
+            self.once_a_cell = 1.0 / (most * self.cell.min_element());
+        }
+        self
+    }
+
+    /// The extinction by which a ray collides once in a cell of the highest bound, 1/m.
+    #[inline]
+    pub fn once_a_cell(&self) -> f32 {
+        self.once_a_cell
     }
 
     /// One cell with a value.
@@ -70,7 +87,9 @@ impl Majorants {
             values: vec![value],
             min: bounds.min,
             cell: bounds.max - bounds.min,
+            once_a_cell: 0.0,
         }
+        .with_rate()
     }
 
     /// The same cells with their values times `factor`.

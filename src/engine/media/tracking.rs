@@ -168,13 +168,13 @@ impl Medium {
         channel: &Channel,
         draws: &mut Draws,
     ) -> Tracked {
-        let most = self.sigma_t.max_component();
         let mut emitted = Rgb::BLACK;
         // Densities of what was found so far, channel by channel, up to a common factor.
-        let mut found = Rgb::WHITE;
+        let mut found = channel.q.map(|q| f32::from(q > 0.0));
+        let mut most = self.most(grid, found);
         let mut depth = free_path(draws.next());
         for (begin, end, bound) in grid.majorants.walk(ray, grid.clip(ray, span)) {
-            let majorant = bound * most;
+            let mut majorant = bound * most;
             let mut t = begin;
             while let Some(step) = step_within(depth, majorant, end - t) {
                 t += step;
@@ -194,6 +194,8 @@ impl Medium {
                 }
                 found *= real.map(|p| 1.0 - p);
                 found *= 1.0 / found.max_component();
+                most = self.most(grid, found);
+                majorant = bound * most;
                 depth = free_path(draws.next());
             }
             depth -= (end - t) * majorant;
@@ -203,6 +205,19 @@ impl Medium {
             weight: found / channel.mean(found),
             emitted,
         }
+    }
+
+    /// The largest extinction of the channels that something is left of: by it steps are taken, so
+    /// that where red is gone at once, blue does not cross all of the space in red's steps.
+    #[inline]
+    fn most(&self, grid: &Grid, left: Rgb) -> f32 {
+        let rate = |c: usize| match (left[c] > 0.0, self.sigma_t[c]) {
+            (false, _) => 0.0,
+            // It is only seen where something collides.
+            (true, 0.0) if self.emission[c] > 0.0 => grid.majorants.once_a_cell(),
+            (true, sigma) => sigma,
+        };
+        rate(0).max(rate(1)).max(rate(2))
     }
 
     /// The share of light that gets through, in the mean over `draws`.
@@ -216,11 +231,11 @@ impl Medium {
 
     /// Ratio tracking: nothing is scattered, all that is met attenuates.
     fn attenuate(&self, grid: &Grid, ray: &Ray, span: (f32, f32), draws: &mut Draws) -> Tracked {
-        let most = self.sigma_t.max_component();
         let mut tracked = Tracked::THROUGH;
+        let mut most = self.most(grid, tracked.weight);
         let mut depth = free_path(draws.next());
         for (begin, end, bound) in grid.majorants.walk(ray, grid.clip(ray, span)) {
-            let majorant = bound * most;
+            let mut majorant = bound * most;
             let mut t = begin;
             while let Some(step) = step_within(depth, majorant, end - t) {
                 t += step;
@@ -237,6 +252,8 @@ impl Medium {
                     }
                     tracked.weight *= ROULETTE_BELOW / left;
                 }
+                most = self.most(grid, tracked.weight);
+                majorant = bound * most;
                 depth = free_path(draws.next());
             }
             depth -= (end - t) * majorant;
