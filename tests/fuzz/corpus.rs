@@ -169,6 +169,15 @@ impl FileSource for Files<'_> {
         let beside = BESIDE.get_or_init(|| {
             let mut files = folder("assets/scenes", "obj");
             files.extend(folder("assets/scenes", "mtl"));
+            for scene in [
+                "cornell-glossy",
+                "ajar-door",
+                "caustic-ring",
+                "closed-room",
+                "point-light",
+            ] {
+                files.extend(folder(&format!("tests/reference/{scene}"), "obj"));
+            }
             files.push(("all.obj".to_owned(), ALL_OF_OBJ.as_bytes().to_vec()));
             files.push(("all.mtl".to_owned(), ALL_OF_MTL.as_bytes().to_vec()));
             files.push(("a.png".to_owned(), images().swap_remove(0)));

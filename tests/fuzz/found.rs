@@ -12,7 +12,7 @@ use super::targets::scene;
 /// Time that none of these may take, on a machine that does other work beside.
 const LONG: Duration = Duration::from_secs(20);
 
-fn quickly(what: &str, work: impl FnOnce()) {
+fn quickly<T>(what: &str, work: impl FnOnce() -> T) {
     let started = Instant::now();
     work();
     let took = started.elapsed();

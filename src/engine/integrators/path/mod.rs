@@ -9,6 +9,7 @@
 
 mod direct;
 mod equiangular;
+mod part;
 mod volume;
 mod walk;
 

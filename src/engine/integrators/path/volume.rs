@@ -8,7 +8,7 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::equiangular::Equiangular;
+use super::part::Part;
 use super::walk::{MAX_EVENTS, Walk};
 use super::{Mode, PathTracer, turned};
 use crate::engine::bsdf::{Bsdf, Transport};
@@ -19,7 +19,7 @@ use crate::engine::integrators::tiled::CAMERA_DIMENSIONS;
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
 use crate::engine::math::Rgb;
-use crate::engine::media::{Draws, Inside, Medium};
+use crate::engine::media::{Draws, Inside};
 use crate::engine::path::ClassId;
 use crate::engine::sampling::{Sampler, mis};
 use crate::engine::scene::{Arrival, Flight, Scene, Span, VolumePoint};
@@ -69,41 +69,6 @@ pub(super) struct VolumeWalk<'a, S, G, O> {
     first: u32,
     /// It may have no more events.
     ends: bool,
-}
-
-/// The part of a flight on which light is looked for at one more place: the first in a homogeneous
-/// medium.
-struct Part<'a> {
-    medium: &'a Medium,
-    ray: Ray,
-    range: (f32, f32),
-    /// Throughput where it begins.
-    beta: Rgb,
-    inside: Inside,
-    /// Its number among those of the flight.
-    number: u32,
-}
-
-impl Part<'_> {
-    /// Density of the distance `t` as tracking draws it, 1/m.
-    fn pdf_tracked(&self, t: f32) -> f32 {
-        self.medium.pdf_distance(t - self.range.0, self.beta)
-    }
-
-    fn equiangular(&self, cx: &Pass<'_>, light: u32) -> Option<Equiangular> {
-        let sigmas = self.medium.sigma_t.to_array().into_iter();
-        let least = sigmas.filter(|s| *s > 0.0).fold(f32::INFINITY, f32::min);
-        let light = cx.scene.lights.get(light);
-        Equiangular::new(light, &self.ray, self.range, least)
-    }
-
-    /// Weight of light that is found where tracking scattered at the distance `t`.
-    fn tracked_share(&self, cx: &Pass<'_>, light: u32, t: f32) -> f32 {
-        match self.equiangular(cx, light) {
-            Some(e) => mis::power(self.pdf_tracked(t), e.pdf(t)),
-            None => 1.0,
-        }
-    }
 }
 
 impl PathTracer {
