@@ -405,7 +405,7 @@ fn states_in_pictures() {
             words: &["lightscope:state", "iTXt", "string", "\0"],
             count: 20_000,
             memory: (1 << 20, 1032 * 8 * 48),
-            sound: 0.05,
+            sound: 0.02,
             run,
         }
         .fuzz();
@@ -422,7 +422,7 @@ fn command_lines() {
         "replay cornell --integrator bdpt --set strategies=all-1,2 --index 3,4,0 --seed 1",
         "replay a.toml --stream light --index caustic,4,0 --integrator photon --frame 2",
         "compare a.exr b.exr --region 1,2,3x4 --json",
-        "report a.json --seconds 1 --integrators path,bdpt",
+        "report cornell --reference refs --seconds 60 -o report",
         "reference jensen-box -o ref.exr --error 0.01",
         "list scenes --json",
         "info jensen-box",
