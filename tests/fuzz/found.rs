@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use lightscope::engine::io::image::{self, Encoding};
 use lightscope::engine::io::scene_file;
+use lightscope::picture::exr_file;
 
 use super::allocator::peak_of;
 use super::corpus::Files;
@@ -101,6 +102,34 @@ fn a_claim_of_many_pixels_takes_no_memory() {
         assert!(said.contains("more than its"), "{name}: {said}");
         assert!(peak < 1 << 20, "{name}: {peak} bytes");
     }
+}
+
+/// As above, of OpenEXR files in every encoding: the size stands in an attribute.
+#[test]
+fn a_claim_of_many_pixels_in_openexr_takes_no_memory() {
+    let mut tried = 0;
+    for mut bytes in super::corpus::images() {
+        let name = b"dataWindow\0box2i\0";
+        let Some(at) = bytes.windows(name.len()).position(|w| w == name) else {
+            continue;
+        };
+        // The number of bytes, the left top pixel, then the right bottom one.
+        let last = at + name.len() + 4 + 8;
+        for side in [0, 4] {
+            bytes[last + side..last + side + 4].copy_from_slice(&15_999_i32.to_le_bytes());
+        }
+        let files = Files {
+            changed: "exr",
+            bytes: &bytes,
+        };
+        let peak = peak_of(|| {
+            image::read_from(&files, "exr", Encoding::Srgb).expect_err("no picture");
+            exr_file::decode(&bytes).expect_err("no picture");
+        });
+        assert!(peak < 1 << 20, "{peak} bytes");
+        tried += 1;
+    }
+    assert!(tried > 5);
 }
 
 /// The check sum of PNG chunks (ISO 3309).
