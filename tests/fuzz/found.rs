@@ -182,6 +182,29 @@ fn wild_indices_are_refused() {
     scene_file::load_from(&files, "a.obj").expect("relative indices are allowed");
 }
 
+/// What lies beyond the square root of all numbers has no direction, and a ray toward it met the
+/// empty slots of the tree.
+#[test]
+fn lights_and_views_from_far_beyond_are_rendered() {
+    let meshes = "[[meshes]]\nfile = \"cube.obj\"\nmaterial = \"a\"\n".repeat(3);
+    let number = ["3.4e38", "-3.4e38", "1e30", "1e-38", "0"];
+    for far in number {
+        for (view, light) in [("5", far), (far, "5"), (far, far)] {
+            let text = format!(
+                "camera = {{ position = [0, 1, {view}], target = [0, 0, 0] }}\n\
+                 [materials]\na = {{ type = \"diffuse\", reflectance = 0.5 }}\n{meshes}\
+                 [[lights]]\ntype = \"point\"\nposition = [2, {light}, {light}]\nintensity = 5\n\
+                 [[lights]]\ntype = \"spot\"\nposition = [{light}, 1, 2]\ndirection = [0, 0, -1]\n\
+                 intensity = 3\nangle_deg = 30\nfalloff_deg = 5\n"
+            );
+            assert!(
+                scene("scenes/a.toml", text.as_bytes()) || view == far,
+                "{text}"
+            );
+        }
+    }
+}
+
 /// A name of a megabyte is compared with the names there are.
 #[test]
 fn a_very_long_name_is_refused() {
