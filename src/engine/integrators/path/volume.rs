@@ -3,7 +3,7 @@
 //! Flights end at surfaces or at places where a medium scatters (V). Light is found at both by
 //! shadow rays and by the walk itself, weighed by their densities of directions; transmittance
 //! divides the throughput and enters no weight (CONTRACT rule 6). On each flight light is looked for
-//! at one more place ([`Equiangular`]); it and the place where the flight is scattered share what
+//! at one more place ([`super::equiangular`]); it and the place where the flight is scattered share what
 //! they find by their densities of distances.
 
 use glam::{Vec2, Vec3A};
