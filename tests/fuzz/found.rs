@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use lightscope::engine::io::image::{self, Encoding};
 use lightscope::engine::io::scene_file;
+use lightscope::picture::exr_file;
 
 use super::allocator::peak_of;
 use super::corpus::Files;
@@ -12,7 +13,7 @@ use super::targets::scene;
 /// Time that none of these may take, on a machine that does other work beside.
 const LONG: Duration = Duration::from_secs(20);
 
-fn quickly(what: &str, work: impl FnOnce()) {
+fn quickly<T>(what: &str, work: impl FnOnce() -> T) {
     let started = Instant::now();
     work();
     let took = started.elapsed();
@@ -103,6 +104,34 @@ fn a_claim_of_many_pixels_takes_no_memory() {
     }
 }
 
+/// As above, of OpenEXR files in every encoding: the size stands in an attribute.
+#[test]
+fn a_claim_of_many_pixels_in_openexr_takes_no_memory() {
+    let mut tried = 0;
+    for mut bytes in super::corpus::images() {
+        let name = b"dataWindow\0box2i\0";
+        let Some(at) = bytes.windows(name.len()).position(|w| w == name) else {
+            continue;
+        };
+        // The number of bytes, the left top pixel, then the right bottom one.
+        let last = at + name.len() + 4 + 8;
+        for side in [0, 4] {
+            bytes[last + side..last + side + 4].copy_from_slice(&15_999_i32.to_le_bytes());
+        }
+        let files = Files {
+            changed: "exr",
+            bytes: &bytes,
+        };
+        let peak = peak_of(|| {
+            image::read_from(&files, "exr", Encoding::Srgb).expect_err("no picture");
+            exr_file::decode(&bytes).expect_err("no picture");
+        });
+        assert!(peak < 1 << 20, "{peak} bytes");
+        tried += 1;
+    }
+    assert!(tried > 5);
+}
+
 /// The check sum of PNG chunks (ISO 3309).
 fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32, byte: &u8| {
@@ -151,6 +180,29 @@ fn wild_indices_are_refused() {
         bytes: good.as_bytes(),
     };
     scene_file::load_from(&files, "a.obj").expect("relative indices are allowed");
+}
+
+/// What lies beyond the square root of all numbers has no direction, and a ray toward it met the
+/// empty slots of the tree.
+#[test]
+fn lights_and_views_from_far_beyond_are_rendered() {
+    let meshes = "[[meshes]]\nfile = \"cube.obj\"\nmaterial = \"a\"\n".repeat(3);
+    let number = ["3.4e38", "-3.4e38", "1e30", "1e-38", "0"];
+    for far in number {
+        for (view, light) in [("5", far), (far, "5"), (far, far)] {
+            let text = format!(
+                "camera = {{ position = [0, 1, {view}], target = [0, 0, 0] }}\n\
+                 [materials]\na = {{ type = \"diffuse\", reflectance = 0.5 }}\n{meshes}\
+                 [[lights]]\ntype = \"point\"\nposition = [2, {light}, {light}]\nintensity = 5\n\
+                 [[lights]]\ntype = \"spot\"\nposition = [{light}, 1, 2]\ndirection = [0, 0, -1]\n\
+                 intensity = 3\nangle_deg = 30\nfalloff_deg = 5\n"
+            );
+            assert!(
+                scene("scenes/a.toml", text.as_bytes()) || view == far,
+                "{text}"
+            );
+        }
+    }
 }
 
 /// A name of a megabyte is compared with the names there are.

@@ -21,8 +21,10 @@ pub struct Target {
     pub count: u64,
     /// Most memory in bytes: what any input may take, and more for each byte of it.
     pub memory: (usize, usize),
-    /// Tries an input.
-    pub run: fn(&[u8]),
+    /// Tries an input; whether it was sound.
+    pub run: fn(&[u8]) -> bool,
+    /// Least share of the inputs that is sound: what is refused at once tells little.
+    pub sound: f64,
 }
 
 /// An input that takes longer hangs. Other work may slow the machine down.
@@ -38,9 +40,15 @@ impl Target {
         let watch = Watch::start(self.name);
         for input in &self.corpus {
             watch.look_at(input);
-            self.try_input(input, u64::MAX);
+            let (_, sound) = self.try_input(input, u64::MAX);
+            assert!(
+                sound,
+                "{} refuses its corpus: {:?}",
+                self.name,
+                String::from_utf8_lossy(input)
+            );
         }
-        let (mut most, mut share) = (0, 0.0_f64);
+        let (mut most, mut share, mut sound) = (0, 0.0_f64, 0);
         let started = Instant::now();
         for number in 0..count {
             let mut numbers = Numbers::new(self.name, number);
@@ -49,7 +57,8 @@ impl Target {
                 keep(self.name, &input);
             }
             watch.look_at(&input);
-            let peak = self.try_input(&input, number);
+            let (peak, was_sound) = self.try_input(&input, number);
+            sound += u64::from(was_sound);
             let beyond = peak.saturating_sub(self.memory.0);
             share = share.max(beyond as f64 / input.len().max(1) as f64);
             most = most.max(peak);
@@ -60,10 +69,13 @@ impl Target {
              {share:.0} a byte of input",
             self.name, self.memory.0
         );
+        let sound = sound as f64 / count.max(1) as f64;
+        println!("{}: {:.1} % are sound", self.name, 100.0 * sound);
+        assert!(sound >= self.sound, "{}: only {sound} are sound", self.name);
     }
 
-    fn try_input(&self, input: &[u8], number: u64) -> usize {
-        let mut outcome = Ok(());
+    fn try_input(&self, input: &[u8], number: u64) -> (usize, bool) {
+        let mut outcome = Ok(false);
         let peak = peak_of(|| {
             outcome = catch_unwind(AssertUnwindSafe(|| (self.run)(input))).map_err(|_| ());
         });
@@ -72,7 +84,7 @@ impl Target {
             let path = keep(self.name, input);
             let what = match outcome {
                 Err(()) => "panics".to_owned(),
-                Ok(()) => format!("takes {peak} bytes, more than {limit}"),
+                Ok(_) => format!("takes {peak} bytes, more than {limit}"),
             };
             panic!(
                 "{} {what} on input {number} of {} bytes, {}:\n{}",
@@ -82,7 +94,7 @@ impl Target {
                 String::from_utf8_lossy(&input[..input.len().min(2000)])
             );
         }
-        peak
+        (peak, outcome == Ok(true))
     }
 }
 

@@ -21,19 +21,23 @@ use super::corpus::{self, Files};
 use super::harness::Target;
 
 /// Reads a scene file of that name and prepares what is sound.
-pub fn scene(name: &str, bytes: &[u8]) {
+pub fn scene(name: &str, bytes: &[u8]) -> bool {
     let files = Files {
         changed: name,
         bytes,
     };
     match scene_file::load_from(&files, name) {
-        Ok(desc) => prepare(&desc),
+        Ok(desc) => {
+            prepare(&desc);
+            true
+        }
         Err(error) => {
             let sentence = error.to_string();
             assert!(
                 !sentence.is_empty() && !sentence.contains('\n'),
                 "{sentence:?}"
             );
+            false
         }
     }
 }
@@ -129,7 +133,8 @@ fn toml_scenes() {
         corpus: corpus::toml(),
         words: SCENE_WORDS,
         count: 120_000,
-        memory: (4 << 20, 4000),
+        memory: (2 << 20, 2000),
+        sound: 0.05,
         run: |bytes| scene("scenes/a.toml", bytes),
     }
     .fuzz();
@@ -142,7 +147,8 @@ fn json_scenes() {
         corpus: corpus::json(),
         words: SCENE_WORDS,
         count: 150_000,
-        memory: (4 << 20, 4000),
+        memory: (2 << 20, 2000),
+        sound: 0.05,
         run: |bytes| scene("scenes/a.json", bytes),
     }
     .fuzz();
@@ -158,7 +164,8 @@ fn obj_meshes() {
             "\\\n",
         ],
         count: 120_000,
-        memory: (4 << 20, 8000),
+        memory: (1 << 20, 4000),
+        sound: 0.2,
         run: |bytes| scene("scenes/a.obj", bytes),
     }
     .fuzz();
@@ -173,15 +180,18 @@ fn mtl_materials() {
             "newmtl ", "Kd ", "Ks ", "Ke ", "Ns ", "Ni ", "d ", "Tr ", "illum ", "map_Kd ", "Pr ",
         ],
         count: 60_000,
-        memory: (4 << 20, 8000),
+        memory: (1 << 20, 4000),
+        sound: 0.2,
         run: |bytes| {
             let files = Files {
                 changed: "scenes/all.mtl",
                 bytes,
             };
-            if let Ok(desc) = scene_file::load_from(&files, "scenes/all.obj") {
+            let desc = scene_file::load_from(&files, "scenes/all.obj");
+            desc.is_ok_and(|desc| {
                 prepare(&desc);
-            }
+                true
+            })
         },
     }
     .fuzz();
@@ -194,12 +204,15 @@ fn density_grids() {
         corpus: vec![corpus::DENSITY.into(), b"1 1 1\n0.5\n".to_vec()],
         words: &[" ", "\n", "\r\n", "-", "+", "e", "."],
         count: 100_000,
-        memory: (4 << 20, 4000),
+        memory: (1 << 20, 2000),
+        sound: 0.05,
         run: |bytes| {
             let files = GridScene(bytes);
-            if let Ok(desc) = scene_file::load_from(&files, "scenes/a.toml") {
+            let desc = scene_file::load_from(&files, "scenes/a.toml");
+            desc.is_ok_and(|desc| {
                 prepare(&desc);
-            }
+                true
+            })
         },
     }
     .fuzz();
@@ -240,16 +253,18 @@ fn images() {
         ],
         count: 100_000,
         // A byte of deflate may stand for 1032, each of eight pixels of four channels in f32.
-        memory: (8 << 20, 1032 * 8 * 48),
+        memory: (6 << 20, 1032 * 8 * 48),
+        sound: 0.05,
         run: |bytes| {
             let files = Files {
                 changed: "a",
                 bytes,
             };
             let image = image::read_from(&files, "a", Encoding::Srgb);
-            if let Ok(image) = image {
+            image.is_ok_and(|image| {
                 assert_eq!(image.pixels.len(), image.width * image.height);
-            }
+                true
+            })
         },
     }
     .fuzz();
@@ -268,15 +283,18 @@ fn pictures() {
             "dataWindow",
         ],
         count: 60_000,
-        memory: (8 << 20, 1032 * 8 * 48),
+        memory: (3 << 20, 1032 * 8 * 48),
+        sound: 0.05,
         run: |bytes| {
-            if let Ok(picture) = exr_file::decode(bytes) {
+            let picture = exr_file::decode(bytes).is_ok_and(|picture| {
                 let pixels = (picture.size.x * picture.size.y) as usize;
                 assert!(picture.layers.iter().all(|l| l.pixels.len() == pixels));
-            }
+                true
+            });
             let cursor = || std::io::Cursor::new(bytes);
-            png_file::read_texts(cursor());
-            hdr_file::read_texts(cursor());
+            let png = png_file::read_texts(cursor());
+            let hdr = hdr_file::read_texts(cursor());
+            picture || !png.is_empty() || !hdr.is_empty()
         },
     }
     .fuzz();
@@ -300,14 +318,15 @@ fn expressions() {
         ],
         count: 150_000,
         // A table of classes takes as much for any expression.
-        memory: (48 << 20, 40_000),
+        memory: (3 << 20, 10_000),
+        sound: 0.05,
         run: |bytes| {
             let text = String::from_utf8_lossy(bytes);
-            if let Ok(expression) = text.parse::<Expression>() {
+            text.parse::<Expression>().is_ok_and(|expression| {
                 let again: Expression = expression.text().parse().expect("it was read before");
                 assert_eq!(again, expression);
-                let _ = PathClasses::with_components(&[expression]);
-            }
+                PathClasses::with_components(&[expression]).is_ok()
+            })
         },
     }
     .fuzz();
@@ -328,7 +347,7 @@ fn scratch(name: &str, bytes: &[u8]) -> PathBuf {
 }
 
 #[cfg(feature = "viewer")]
-fn open_state(name: &str, bytes: &[u8]) {
+fn open_state(name: &str, bytes: &[u8]) -> bool {
     use lightscope::viewer::model::Model;
     use lightscope::viewer::opening::Opening;
     use lightscope::viewer::source::SceneSource;
@@ -337,8 +356,9 @@ fn open_state(name: &str, bytes: &[u8]) {
         && let Some(state) = opening.state
     {
         let mut model = Model::new(SceneSource::Embedded("jensen-box".to_owned()));
-        let _ = state.restore(&mut model);
+        return state.restore(&mut model).is_ok();
     }
+    false
 }
 
 #[cfg(feature = "viewer")]
@@ -359,7 +379,8 @@ fn states() {
             "hash",
         ],
         count: 80_000,
-        memory: (48 << 20, 40_000),
+        memory: (1 << 18, 2000),
+        sound: 0.05,
         run: |bytes| open_state("a.json", bytes),
     }
     .fuzz();
@@ -373,7 +394,7 @@ fn states_in_pictures() {
     for (name, run, picture) in [
         (
             "a.png",
-            (|b| open_state("a.png", b)) as fn(&[u8]),
+            (|b| open_state("a.png", b)) as fn(&[u8]) -> bool,
             &pictures[0],
         ),
         ("a.exr", |b| open_state("a.exr", b), &pictures[1]),
@@ -383,7 +404,8 @@ fn states_in_pictures() {
             corpus: vec![picture.clone()],
             words: &["lightscope:state", "iTXt", "string", "\0"],
             count: 20_000,
-            memory: (48 << 20, 1032 * 8 * 48),
+            memory: (1 << 20, 1032 * 8 * 48),
+            sound: 0.02,
             run,
         }
         .fuzz();
@@ -400,7 +422,7 @@ fn command_lines() {
         "replay cornell --integrator bdpt --set strategies=all-1,2 --index 3,4,0 --seed 1",
         "replay a.toml --stream light --index caustic,4,0 --integrator photon --frame 2",
         "compare a.exr b.exr --region 1,2,3x4 --json",
-        "report a.json --seconds 1 --integrators path,bdpt",
+        "report cornell --reference refs --seconds 60 -o report",
         "reference jensen-box -o ref.exr --error 0.01",
         "list scenes --json",
         "info jensen-box",
@@ -432,12 +454,17 @@ fn command_lines() {
             "''",
         ],
         count: 40_000,
-        memory: (8 << 20, 20_000),
+        memory: (1 << 20, 10_000),
+        sound: 0.05,
         run: |bytes| {
             let text = String::from_utf8_lossy(bytes);
             let words: Vec<String> = text.split(' ').map(str::to_owned).collect();
-            if let Err(said) = cli::check(&words) {
-                assert!(!said.is_empty());
+            match cli::check(&words) {
+                Ok(()) => true,
+                Err(said) => {
+                    assert!(!said.is_empty());
+                    false
+                }
             }
         },
     }

@@ -166,9 +166,17 @@ pub fn print_after(frame: &Frame, reference: Option<&Metrics>, bad: &[BadSampleN
         let (rmse, relmse) = (figure(m.rmse), figure(m.relmse));
         note!("against the reference: rmse {rmse}, relmse {relmse}, nmse {nmse}");
     }
-    if f.below_horizon > 0 {
-        note!("microfacet samples below the horizon: {}", f.below_horizon);
-    }
+    note!(
+        "errors: {} not a number, {} infinite, {} negative, {} self-hits, {} missed edges, {} cut \
+         paths; microfacet samples below the horizon, no errors: {}",
+        f.nan,
+        f.infinite,
+        f.negative,
+        f.self_hits,
+        f.missed_edges,
+        f.cut_paths,
+        f.below_horizon
+    );
     print_errors(&f, bad);
     if frame.stats.exceeded_majorants > 0 {
         note!(

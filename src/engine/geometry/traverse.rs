@@ -329,7 +329,9 @@ impl Tree {
                     self.sphere_hit(ray, child.index())
                         .is_some_and(|hit| meet(hit).1)
                 } else {
-                    self.blocks[child.index()].intersect(&sheared, t_max, meet)
+                    // Only what is no ray, with a direction that is 0 or NaN, meets an empty slot.
+                    let block = self.blocks.get(child.index())?;
+                    block.intersect(&sheared, t_max, meet)
                 };
                 if done {
                     break;

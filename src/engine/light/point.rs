@@ -143,9 +143,9 @@ fn sample_at(position: Vec3A, p: Vec3A, intensity: impl Fn(Vec3A) -> Rgb) -> Opt
     let distance = to.length();
     let wi = to / distance;
     let radiance = intensity(-wi) / distance / distance;
-    // A light in the surface itself lies in no direction. What is infinite is let through: it is
-    // counted, not dropped in silence.
-    (distance > 0.0).then_some(LightSample {
+    // A light in the surface itself, or beyond all numbers, lies in no direction. Radiance that is
+    // infinite is let through: it is counted, not dropped in silence.
+    (distance > 0.0 && distance.is_finite()).then_some(LightSample {
         wi,
         target: position,
         distance,

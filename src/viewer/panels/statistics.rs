@@ -190,7 +190,7 @@ fn faults(ui: &mut Ui, frame: &Frame) {
         let text = format!("{stream} {id}");
         let doc = format!(
             "{}; `lightscope replay` with --stream {stream} --index {id} and the settings of this \
-             render follows it again.",
+             render follows it again, if the view is the scene's own.",
             first.what
         );
         figure(ui, "First error", text, &doc);

@@ -1,4 +1,4 @@
-//! Parts of flights within homogeneous media.
+//! The part of a flight through a homogeneous medium that may hold one more place to look for light.
 
 use super::equiangular::Equiangular;
 use crate::engine::geometry::Ray;
@@ -10,23 +10,23 @@ use crate::engine::sampling::mis;
 /// The part of a flight on which light is looked for at one more place: the first in a homogeneous
 /// medium.
 pub(super) struct Part<'a> {
-    pub(super) medium: &'a Medium,
-    pub(super) ray: Ray,
-    pub(super) range: (f32, f32),
+    pub medium: &'a Medium,
+    pub ray: Ray,
+    pub range: (f32, f32),
     /// Throughput where it begins.
-    pub(super) beta: Rgb,
-    pub(super) inside: Inside,
+    pub beta: Rgb,
+    pub inside: Inside,
     /// Its number among those of the flight.
-    pub(super) number: u32,
+    pub number: u32,
 }
 
 impl Part<'_> {
     /// Density of the distance `t` as tracking draws it, 1/m.
-    pub(super) fn pdf_tracked(&self, t: f32) -> f32 {
+    pub fn pdf_tracked(&self, t: f32) -> f32 {
         self.medium.pdf_distance(t - self.range.0, self.beta)
     }
 
-    pub(super) fn equiangular(&self, cx: &Pass<'_>, light: u32) -> Option<Equiangular> {
+    pub fn equiangular(&self, cx: &Pass<'_>, light: u32) -> Option<Equiangular> {
         let sigmas = self.medium.sigma_t.to_array().into_iter();
         let least = sigmas.filter(|s| *s > 0.0).fold(f32::INFINITY, f32::min);
         let light = cx.scene.lights.get(light);
@@ -34,7 +34,7 @@ impl Part<'_> {
     }
 
     /// Weight of light that is found where tracking scattered at the distance `t`.
-    pub(super) fn tracked_share(&self, cx: &Pass<'_>, light: u32, t: f32) -> f32 {
+    pub fn tracked_share(&self, cx: &Pass<'_>, light: u32, t: f32) -> f32 {
         match self.equiangular(cx, light) {
             Some(e) => mis::power(self.pdf_tracked(t), e.pdf(t)),
             None => 1.0,
