@@ -1,6 +1,7 @@
 //! Arguments as they are typed.
 
 mod measuring;
+mod stability;
 
 use std::path::PathBuf;
 
@@ -12,6 +13,7 @@ use crate::engine::measure::Region;
 
 use super::suggest::did_you_mean;
 pub use measuring::{ReferenceArgs, ReportArgs};
+pub use stability::StabilityArgs;
 
 /// Renders scenes by global illumination. Without a command it opens the window.
 #[derive(Debug, Parser)]
@@ -35,6 +37,8 @@ pub enum Command {
     Report(ReportArgs),
     /// Render a reference: a picture whose standard error is known pixel by pixel.
     Reference(ReferenceArgs),
+    /// Prove the limits of this program on this machine: stiff and extreme cases.
+    Stability(StabilityArgs),
     /// List what there is to choose from.
     List(ListArgs),
     /// Say what a scene or a picture holds.
@@ -143,7 +147,7 @@ pub struct CompareArgs {
 #[derive(Debug, Args)]
 pub struct ListArgs {
     /// What to list.
-    #[arg(value_name = "scenes|integrators")]
+    #[arg(value_name = "scenes|integrators|cases")]
     pub what: Listing,
     /// Print JSON.
     #[arg(long)]
@@ -157,6 +161,8 @@ pub enum Listing {
     Scenes,
     /// The algorithms and their parameters.
     Integrators,
+    /// The cases of `stability`.
+    Cases,
 }
 
 /// Arguments of `info`.

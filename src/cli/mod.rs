@@ -17,6 +17,7 @@ mod reference;
 mod render;
 mod report;
 mod scene;
+mod stability;
 mod suggest;
 
 use std::process::ExitCode;
@@ -59,6 +60,7 @@ fn run(cli: Cli) -> Result<(), CliError> {
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Report(args)) => report::run(&args),
         Some(Command::Reference(args)) => reference::run(&args),
+        Some(Command::Stability(args)) => stability::run(&args),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args.what),

@@ -1,9 +1,9 @@
 //! `lightscope report`: algorithms against each other, on a page of its own.
 
 mod images;
-mod machine;
+pub(super) mod machine;
 mod options;
-mod page;
+pub(super) mod page;
 mod progress;
 mod record;
 mod store;

@@ -43,6 +43,7 @@ pub fn plot(scene: &SceneSummary, target: f64) -> Result<String, String> {
         },
         curves: curves.collect(),
         target: Some(target),
+        guided: true,
     };
     svg(&chart, [980, 560])
 }
@@ -290,7 +291,7 @@ fn pictures(
 }
 
 /// Text that HTML shows as it is.
-fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
