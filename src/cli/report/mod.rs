@@ -3,7 +3,7 @@
 mod images;
 pub(super) mod machine;
 mod options;
-pub(super) mod page;
+mod page;
 mod progress;
 mod record;
 mod store;

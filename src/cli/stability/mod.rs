@@ -46,12 +46,22 @@ pub fn run(args: &StabilityArgs) -> Result<(), CliError> {
     let mut rows = Vec::new();
     for (i, case) in cases.iter().enumerate() {
         note!("{} of {}: {}", i + 1, cases.len(), case.id);
-        let outcomes = stability::run(case, &args.integrator, depth, &|_| ());
-        let row = Row { case, outcomes };
         if !args.json {
-            table::print(&row)?;
+            table::heading(case)?;
         }
-        rows.push(row);
+        let mut outcomes: Vec<Outcome> = Vec::new();
+        let mut printed = Ok(());
+        stability::run(case, &args.integrator, depth, &mut |outcome| {
+            if !args.json && printed.is_ok() {
+                printed = table::print(case, &outcome);
+            }
+            outcomes.push(outcome);
+        });
+        printed?;
+        rows.push(Row { case, outcomes });
+        if let (false, Some(row)) = (args.json, rows.last()) {
+            table::left_out(row)?;
+        }
     }
     let record = Record::new(&rows, depth, clock.wall(), Machine::this());
     if let Some(folder) = &args.output {

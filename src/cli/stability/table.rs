@@ -4,7 +4,7 @@ use super::Row;
 use super::record::LIMIT;
 use crate::cli::error::CliError;
 use crate::cli::print::{self, duration, figure};
-use crate::engine::stability::{Outcome, Point};
+use crate::engine::stability::{Case, Outcome, Point};
 
 /// A share as a percentage.
 pub fn percent(share: f64) -> String {
@@ -54,27 +54,43 @@ pub fn verdict(outcome: &Outcome) -> &'static str {
     }
 }
 
-/// Prints the outcomes of a case.
-pub fn print(row: &Row) -> Result<(), CliError> {
-    let case = row.case;
+/// Prints what a case is.
+pub fn heading(case: &Case) -> Result<(), CliError> {
     print::line(&format!("\n{}: {}", case.id, case.summary))?;
-    print::line(&format!("  right is {}", case.oracle))?;
-    for outcome in &row.outcomes {
-        if outcome.left_out.is_none() {
-            print::line(&line(case.parameter, outcome))?;
-            for point in outcome.points.iter().filter(|p| p.fails()) {
-                let at = short(point.x);
-                print::line(&format!("      at {at} {}: {}", point.curve, point.note))?;
-            }
-        }
+    print::line(&format!("  right is {}", case.oracle))
+}
+
+/// Prints an outcome, and where it fails.
+pub fn print(case: &Case, outcome: &Outcome) -> Result<(), CliError> {
+    if outcome.left_out.is_some() {
+        return Ok(());
     }
+    print::line(&line(case.parameter, outcome))?;
+    for point in outcome.points.iter().filter(|p| p.fails()) {
+        let at = short(point.x);
+        let why = if point.note.is_empty() {
+            format!("{} is not {}", point.measured, point.exact)
+        } else {
+            point.note.clone()
+        };
+        print::line(&format!("      at {at} {}: {why}", point.curve))?;
+    }
+    Ok(())
+}
+
+/// Prints who was not asked, and why.
+pub fn left_out(row: &Row) -> Result<(), CliError> {
     let left: Vec<&Outcome> = row
         .outcomes
         .iter()
         .filter(|o| o.left_out.is_some())
         .collect();
-    let mut reasons: Vec<&str> = left.iter().filter_map(|o| o.left_out).collect();
-    reasons.dedup();
+    let mut reasons: Vec<&str> = Vec::new();
+    for reason in left.iter().filter_map(|o| o.left_out) {
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+    }
     for reason in reasons {
         let same = left.iter().filter(|o| o.left_out == Some(reason));
         let ids: Vec<&str> = same.map(|o| o.subject.as_str()).collect();

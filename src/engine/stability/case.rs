@@ -32,7 +32,7 @@ pub struct Case {
     /// Whether it asks an integrator, and how it is set; `engine` alone for parts of the engine.
     pub fit: fn(&str) -> Fit,
     /// Measures; called once a variant.
-    pub run: fn(&mut Run<'_>),
+    pub run: fn(&mut Run),
 }
 
 /// Name under which cases ask parts of the engine and no integrator.
@@ -137,7 +137,7 @@ impl Outcome {
 }
 
 /// A case under way with one variant of one integrator.
-pub struct Run<'a> {
+pub struct Run {
     /// How long it may take.
     pub depth: Depth,
     /// The integrator; none where the engine is asked.
@@ -145,11 +145,10 @@ pub struct Run<'a> {
     /// Its settings.
     pub variant: Variant,
     points: Vec<Point>,
-    progress: &'a dyn Fn(&str),
     clock: RenderClock,
 }
 
-impl Run<'_> {
+impl Run {
     /// Id of the integrator.
     pub fn id(&self) -> &'static str {
         self.entry.map_or(ENGINE, |entry| entry.id)
@@ -177,7 +176,6 @@ impl Run<'_> {
         exact: f64,
         how: &Sampling,
     ) {
-        (self.progress)(&format!("{} {curve} {x:e}", self.id()));
         let how = Sampling {
             bias: how.bias.max(self.variant.bias),
             ..*how
@@ -268,27 +266,19 @@ impl Run<'_> {
     }
 }
 
-/// Asks the engine or the integrators of `ids` (all if empty); `progress` hears of each point.
-pub fn run(
-    case: &'static Case,
-    ids: &[String],
-    depth: Depth,
-    progress: &dyn Fn(&str),
-) -> Vec<Outcome> {
+/// Asks the engine or the integrators of `ids` (all if empty); `hear` is told each outcome.
+pub fn run(case: &'static Case, ids: &[String], depth: Depth, hear: &mut dyn FnMut(Outcome)) {
     let wanted = |id: &str| ids.is_empty() || ids.iter().any(|i| i == id);
     let engine = std::iter::once((ENGINE, None));
     let all = integrators::REGISTRY.iter().map(|e| (e.id, Some(e)));
-    let mut outcomes = Vec::new();
     for (id, entry) in engine.chain(all) {
         match (case.fit)(id) {
             Fit::Asked(variants) if entry.is_none() || wanted(id) => {
-                outcomes.extend(
-                    variants
-                        .iter()
-                        .map(|v| ask(case, entry, *v, depth, progress)),
-                );
+                variants
+                    .iter()
+                    .for_each(|v| hear(ask(case, entry, *v, depth)));
             }
-            Fit::LeftOut(why) if entry.is_some() && wanted(id) => outcomes.push(Outcome {
+            Fit::LeftOut(why) if entry.is_some() && wanted(id) => hear(Outcome {
                 case: case.id,
                 subject: id.to_owned(),
                 points: Vec::new(),
@@ -298,7 +288,6 @@ pub fn run(
             _ => {}
         }
     }
-    outcomes
 }
 
 fn ask(
@@ -306,7 +295,6 @@ fn ask(
     entry: Option<&'static Entry>,
     variant: Variant,
     depth: Depth,
-    progress: &dyn Fn(&str),
 ) -> Outcome {
     let clock = RenderClock::start();
     let mut run = Run {
@@ -314,7 +302,6 @@ fn ask(
         entry,
         variant,
         points: Vec::new(),
-        progress,
         clock,
     };
     (case.run)(&mut run);

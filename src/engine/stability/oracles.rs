@@ -30,10 +30,10 @@ pub fn ggx_albedo(alpha: f64, cos: f64) -> f64 {
     let (rings, sectors) = (1000, 500);
     let mut sum = 0.0;
     for i in 0..rings {
-        // D cosθ dω of the normal is uniform in u: tan²θ = α² u/(1 − u). Towards u = 1, where the
-        // integrand has a root's cusp, the grid becomes denser.
+        // D cosθ dω of the normal is uniform in u: tan²θ = α² u/(1 − u). Towards u = 1, where
+        // normals turn to grazing, the grid becomes denser.
         let s = (f64::from(i) + 0.5) / f64::from(rings);
-        let (u, du) = (s * (2.0 - s), 2.0 * (1.0 - s));
+        let (u, du) = (1.0 - (1.0 - s).powi(4), 4.0 * (1.0 - s).powi(3));
         let tan2 = alpha * alpha * u / (1.0 - u);
         let z = 1.0 / (1.0 + tan2).sqrt();
         let r = (1.0 - z * z).sqrt();

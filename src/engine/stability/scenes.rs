@@ -218,7 +218,7 @@ pub fn job_of(entry: &'static Entry, set: &[(&str, &str)], desc: &SceneDesc) -> 
     }
 }
 
-impl Run<'_> {
+impl Run {
     /// A job of the integrator that is asked.
     pub fn job(&self, desc: &SceneDesc) -> RenderJob {
         let entry = self.entry.unwrap_or(&integrators::path::ENTRY);

@@ -45,7 +45,7 @@ pub const SMALL: Case = Case {
     run: small,
 };
 
-fn falloff(run: &mut Run<'_>) {
+fn falloff(run: &mut Run) {
     let rho = 0.5_f32;
     for d in decades(-6..=6, run.pick(6, 3)) {
         let d = d as f32;
@@ -111,7 +111,7 @@ fn disk_fit(id: &str) -> Fit {
     }
 }
 
-fn disk(run: &mut Run<'_>) {
+fn disk(run: &mut Run) {
     for ratio in decades(-6..=6, run.pick(3, 1)) {
         // 1024 sides: the inscribed area is short by 6e-6.
         let mut desc = spot(0.5, 0.01);
@@ -130,7 +130,7 @@ fn small_fit(id: &str) -> Fit {
     }
 }
 
-fn small(run: &mut Run<'_>) {
+fn small(run: &mut Run) {
     let hits = run.variant.name == "hits";
     // By chance hits a ball of area A is found once in 2π/A samples.
     let least = match hits {

@@ -69,7 +69,7 @@ fn beer_fit(id: &str) -> Fit {
     }
 }
 
-fn beer(run: &mut Run<'_>) {
+fn beer(run: &mut Run) {
     for tau in decades(-9..=4, run.pick(2, 1)).chain([0.5, 10.0, 80.0]) {
         let mut desc = SceneDesc {
             camera: view(Vec3::Z * 5.0, Vec3::ZERO, 0.01, 2),
@@ -130,7 +130,7 @@ fn slab_fit(id: &str) -> Fit {
     }
 }
 
-fn slab(run: &mut Run<'_>) {
+fn slab(run: &mut Run) {
     let thick: &[f32] = run.pick(
         &[0.5, 10.0, 100.0],
         &[0.5, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0],
@@ -150,7 +150,7 @@ fn half_space_fit(id: &str) -> Fit {
     }
 }
 
-fn half_space(run: &mut Run<'_>) {
+fn half_space(run: &mut Run) {
     let albedos: &[f32] = match run.id() {
         "path" => run.pick(&[0.3, 0.9, 0.99], &[0.3, 0.9, 0.99, 0.999]),
         _ => run.pick(&[0.3, 0.9], &[0.3, 0.9]),
@@ -189,7 +189,7 @@ fn half_space(run: &mut Run<'_>) {
     }
 }
 
-fn furnace(run: &mut Run<'_>) {
+fn furnace(run: &mut Run) {
     let sure = run.variant.name == "hits";
     let clouds: &[(&str, PhaseDesc, f32)] = &[
         ("isotropic", PhaseDesc::Isotropic, 1.0),

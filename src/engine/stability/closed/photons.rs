@@ -68,7 +68,7 @@ fn stored(scene: &Scene, roulette: Roulette, index: u64, photons: usize) -> f64 
     }
 }
 
-fn power(run: &mut Run<'_>) {
+fn power(run: &mut Run) {
     let albedos: &[f32] = run.pick(&[0.5, 0.9, 0.99], &[0.5, 0.9, 0.99, 0.999]);
     for (name, roulette) in [
         ("power kept", Roulette::Keep),
@@ -104,7 +104,7 @@ fn lens_fit(id: &str) -> Fit {
     fits::caustic_point(id)
 }
 
-fn lens(run: &mut Run<'_>) {
+fn lens(run: &mut Run) {
     let (distance, side) = (3.0_f32, 4.0_f32);
     let rho = 0.5_f32;
     for n in [1.1_f32, 1.3, 1.5] {

@@ -54,7 +54,7 @@ fn chain_fit(id: &str) -> Fit {
     }
 }
 
-fn chain(run: &mut Run<'_>) {
+fn chain(run: &mut Run) {
     let sure = run.variant.name == "hits";
     for n in [1_u32, 10, 100, 1000, 10_000] {
         let r = 0.5_f64.powf(1.0 / f64::from(n)) as f32;
@@ -95,7 +95,7 @@ fn slab_fit(id: &str) -> Fit {
     }
 }
 
-fn slab(run: &mut Run<'_>) {
+fn slab(run: &mut Run) {
     for n in [1.0_f32 - 1e-6, 1.0, 1.0 + 1e-6, 1.5, 2.4, 1e3] {
         let mut desc = SceneDesc {
             camera: view(Vec3::Y * 9.0, Vec3::ZERO, 0.01, 2),
@@ -123,7 +123,7 @@ fn slab(run: &mut Run<'_>) {
     }
 }
 
-fn refraction(run: &mut Run<'_>) {
+fn refraction(run: &mut Run) {
     let sure = run.variant.name == "hits";
     for n in [1.0_f32, 1.0 + 1e-6, 1.5, 2.4] {
         let mut desc = SceneDesc {

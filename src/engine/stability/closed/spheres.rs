@@ -86,7 +86,7 @@ fn brightest(id: &str, depth: Depth) -> usize {
     }
 }
 
-fn integrating(run: &mut Run<'_>) {
+fn integrating(run: &mut Run) {
     let rooms = [0.5_f32, 0.9, 0.99, 0.999, 0.9999];
     let last = brightest(run.id(), run.depth);
     for (i, rho) in rooms.into_iter().take(last + 1).enumerate() {
@@ -107,7 +107,7 @@ fn point_fit(id: &str) -> Fit {
     fits::closed_room_point(id)
 }
 
-fn point(run: &mut Run<'_>) {
+fn point(run: &mut Run) {
     let rho = 0.75_f32;
     let step = run.pick(6, 3);
     for radius in decades(-6..=6, step) {

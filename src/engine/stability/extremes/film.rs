@@ -64,7 +64,7 @@ fn film_mean(n: u64, first: f32, rest: f32) -> f64 {
         .map_or(f64::NAN, |l| f64::from(l.pixels[0][0]))
 }
 
-fn accumulate(run: &mut Run<'_>) {
+fn accumulate(run: &mut Run) {
     let n = 1_u64 << run.pick(23, 25);
     let found = film_mean(n, 1.1, 1.1);
     run.value(n as f64, "of one kind", found, f64::from(1.1_f32), 1e-6);
@@ -104,7 +104,7 @@ fn roulette_fit(id: &str) -> Fit {
     }
 }
 
-fn roulette(run: &mut Run<'_>) {
+fn roulette(run: &mut Run) {
     let albedos: &[f32] = match run.id() {
         "path" => run.pick(&[0.9, 0.995], &[0.9, 0.995, 0.9995]),
         "light" => run.pick(&[0.9, 0.99], &[0.9, 0.995]),

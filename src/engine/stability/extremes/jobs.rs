@@ -77,7 +77,7 @@ fn sizes_fit(id: &str) -> Fit {
     }
 }
 
-fn sizes(run: &mut Run<'_>) {
+fn sizes(run: &mut Run) {
     let (rho, intensity) = (0.5_f32, 7.0_f32);
     for size in [UVec2::new(1, 1), UVec2::new(1, 64), UVec2::new(4096, 1)] {
         let desc = SceneDesc {
@@ -100,7 +100,7 @@ fn sizes(run: &mut Run<'_>) {
     }
 }
 
-fn empty(run: &mut Run<'_>) {
+fn empty(run: &mut Run) {
     let base = SceneDesc {
         camera: view(Vec3::Z * 4.0, Vec3::ZERO, 20.0, 4),
         materials: vec![diffuse("white", 0.5)],
@@ -160,7 +160,7 @@ fn bits(frame: &Frame) -> Vec<u32> {
     values.map(|v| v.to_bits()).collect()
 }
 
-fn threads(run: &mut Run<'_>) {
+fn threads(run: &mut Run) {
     let mut job = run.job(&room(1.0));
     job.settings.layers.components = true;
     job.size = UVec2::new(24, 16);
@@ -185,7 +185,7 @@ fn threads(run: &mut Run<'_>) {
     }
 }
 
-fn layers(run: &mut Run<'_>) {
+fn layers(run: &mut Run) {
     let mut job = run.job(&room(1.0));
     job.settings.layers.components = true;
     let words = ["LE|L.*SE", "L.*GE", "L.*DE"];

@@ -58,7 +58,7 @@ fn range_fit(id: &str) -> Fit {
     }
 }
 
-fn range(run: &mut Run<'_>) {
+fn range(run: &mut Run) {
     let (rho, intensity) = (0.5_f32, 7.0_f32);
     for ratio in decades(0..=run.pick(8, 12), 2) {
         let floor = square(0, Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0);
@@ -98,7 +98,7 @@ fn touching_fit(id: &str) -> Fit {
     }
 }
 
-fn touching(run: &mut Run<'_>) {
+fn touching(run: &mut Run) {
     let rho = 0.5_f32;
     for (name, toward) in [("facing the middle", -1.0), ("facing the wall", 1.0)] {
         for near in decades(1..=run.pick(4, 6), run.pick(3, 1)) {
@@ -125,7 +125,7 @@ fn touching(run: &mut Run<'_>) {
 /// Words of up to two events without `LE`, and some of three.
 const WORDS: [&str; 6] = ["LDE", "LSE", "LDDE", "LDSE", "LSDE", "LSDSE"];
 
-fn unsampleable(run: &mut Run<'_>) {
+fn unsampleable(run: &mut Run) {
     let ball = |m, x, y, z, r| sphere(m, Vec3::new(x, y, z), r, false);
     let desc = SceneDesc {
         camera: view(

@@ -78,7 +78,7 @@ fn differences(points: &[Vec3A], queries: &[Vec3A], k: usize, r2: f32) -> u64 {
     queries.iter().filter(differs).count() as u64
 }
 
-fn tree(run: &mut Run<'_>) {
+fn tree(run: &mut Run) {
     let most = run.pick(20_000, 1_000_000);
     for count in [0, 1, 2, 3, 7, 8, 1000, most] {
         let even = cloud(count, 1);
@@ -114,7 +114,7 @@ fn landing(scene: &Scene, o: Vec3, d: Vec3) -> Option<SurfaceInteraction> {
     Some(scene.geometry.interaction(&ray, &hit))
 }
 
-fn estimate(run: &mut Run<'_>) {
+fn estimate(run: &mut Run) {
     for gap in [0.0_f32, 1e-6, 1e-4, 1e-2] {
         let (a, b) = (Vec3::Z * 4.0, Vec3::X * 4.0);
         let mut meshes = vec![quad(0, Vec3::new(-2.0, 0.0, -2.0), a, b)];

@@ -93,7 +93,7 @@ fn geometry(positions: &[Vec3], triangles: &[[u32; 3]]) -> (Geometry, usize) {
     (geometry, report.total())
 }
 
-fn axis(run: &mut Run<'_>) {
+fn axis(run: &mut Run) {
     let MeshDesc {
         positions,
         triangles,
@@ -132,7 +132,7 @@ fn axis(run: &mut Run<'_>) {
     run.count(2.0, "plane", met, 10_000, "rays within the plane of a quad");
 }
 
-fn watertight(run: &mut Run<'_>) {
+fn watertight(run: &mut Run) {
     let rays = run.pick(300_000, 25_000_000);
     let places = [
         (1.0, Vec3::ZERO),
@@ -169,7 +169,7 @@ fn watertight(run: &mut Run<'_>) {
     }
 }
 
-fn degenerate(run: &mut Run<'_>) {
+fn degenerate(run: &mut Run) {
     let huge = 1e38;
     let positions = [
         Vec3::ZERO,
@@ -214,7 +214,7 @@ fn degenerate(run: &mut Run<'_>) {
     run.count(2.0, "needle", wrong, trials, "hits that are not finite");
 }
 
-fn coincident(run: &mut Run<'_>) {
+fn coincident(run: &mut Run) {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
     let mut alone = f64::NAN;
     for count in [1, 1000, 100_000] {
@@ -269,7 +269,7 @@ fn shell(ulps: f32, trials: u64) -> (u64, u64) {
     (own, leaked)
 }
 
-fn thin(run: &mut Run<'_>) {
+fn thin(run: &mut Run) {
     let trials = run.pick(3000, 50_000);
     for ulps in [1e4_f32, 100.0, 8.0] {
         let (own, leaked) = shell(ulps, trials);

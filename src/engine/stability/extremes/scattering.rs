@@ -76,7 +76,7 @@ fn integrals(bsdf: &Bsdf, alpha: f64, wo: Vec3A) -> (f64, f64) {
     let (mut pdf, mut f) = (0.0, 0.0);
     for i in 0..rings {
         let s = (f64::from(i) + 0.5) / f64::from(rings);
-        let (u, du) = (s * (2.0 - s), 2.0 * (1.0 - s));
+        let (u, du) = (1.0 - (1.0 - s).powi(4), 4.0 * (1.0 - s).powi(3));
         let tan2 = alpha * alpha * u / (1.0 - u);
         let cos = 1.0 / (1.0 + tan2).sqrt();
         let sin = tan2.sqrt() * cos;
@@ -104,7 +104,7 @@ fn integrals(bsdf: &Bsdf, alpha: f64, wo: Vec3A) -> (f64, f64) {
     (pdf / n, f / n)
 }
 
-fn microfacets(run: &mut Run<'_>) {
+fn microfacets(run: &mut Run) {
     for cos in [1.0_f32, 0.5, 0.1, 0.01] {
         let wo = Vec3A::new((1.0 - cos * cos).sqrt(), 0.0, cos);
         for alpha in [1.0_f32, 0.3, 0.1, 0.01, 1e-3, 1e-4] {
@@ -149,7 +149,7 @@ fn ior_fit(id: &str) -> Fit {
     }
 }
 
-fn ior(run: &mut Run<'_>) {
+fn ior(run: &mut Run) {
     let sure = run.id() == "path";
     for (name, shift, rho) in [
         ("nested, ρ = 1", 0.0, 1.0_f32),
@@ -190,7 +190,7 @@ fn ior(run: &mut Run<'_>) {
 
 const ALL_ENDS: [f32; 4] = [0.0, f32::MIN_POSITIVE, 0.5, ONE_MINUS_EPSILON];
 
-fn ends(run: &mut Run<'_>) {
+fn ends(run: &mut Run) {
     let materials = [
         diffuse("diffuse", 0.8),
         mirror("mirror", 1.0),
@@ -241,7 +241,7 @@ fn ends(run: &mut Run<'_>) {
     warps(run);
 }
 
-fn warps(run: &mut Run<'_>) {
+fn warps(run: &mut Run) {
     let (mut wrong, mut trials) = (0, 0);
     for (x, y) in ALL_ENDS.iter().flat_map(|x| ALL_ENDS.map(|y| (*x, y))) {
         let u = Vec2::new(x, y);

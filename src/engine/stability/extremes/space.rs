@@ -68,7 +68,7 @@ fn farthest(a: &Frame, b: &Frame) -> f64 {
     differences.fold(0.0, |most, d| if d <= most { most } else { d })
 }
 
-fn scale(run: &mut Run<'_>) {
+fn scale(run: &mut Run) {
     let unit = run.job(&room(1.0));
     let passes = run.pick(2, 8);
     let Some(expected) = frame(&unit, 0, passes) else {
@@ -105,7 +105,7 @@ fn translate_fit(id: &str) -> Fit {
     }
 }
 
-fn translate(run: &mut Run<'_>) {
+fn translate(run: &mut Run) {
     let (rho, intensity) = (0.75_f32, 3.0_f32);
     for offset in std::iter::once(1.0).chain(decades(2..=7, 1)) {
         let center = Vec3::splat(offset as f32);
@@ -144,7 +144,7 @@ fn telephoto_fit(id: &str) -> Fit {
     }
 }
 
-fn telephoto(run: &mut Run<'_>) {
+fn telephoto(run: &mut Run) {
     let (rho, intensity) = (0.5_f32, 7.0_f32);
     for far in [1.0_f32, 100.0, 1e4] {
         let tan = 0.4 / far;

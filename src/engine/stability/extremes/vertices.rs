@@ -60,7 +60,7 @@ fn near_fit(id: &str) -> Fit {
     }
 }
 
-fn near(run: &mut Run<'_>) {
+fn near(run: &mut Run) {
     let rho = 0.5_f32;
     for near in decades(1..=run.pick(5, 6), 2) {
         let gap = (1.0 / near) as f32;
@@ -128,7 +128,7 @@ fn faceted(rows: u32) -> MeshDesc {
     }
 }
 
-fn normals(run: &mut Run<'_>) {
+fn normals(run: &mut Run) {
     for rows in [3, 4, 8] {
         let desc = SceneDesc {
             camera: view(Vec3::new(0.5, 1.0, 4.0), Vec3::ZERO, 25.0, 8),
@@ -155,7 +155,7 @@ fn metropolis_fit(id: &str) -> Fit {
     }
 }
 
-fn metropolis(run: &mut Run<'_>) {
+fn metropolis(run: &mut Run) {
     // A point light seen in a mirror alone.
     let dark = SceneDesc {
         camera: view(Vec3::Z * 4.0, Vec3::ZERO, 20.0, 8),

@@ -33,7 +33,7 @@ fn medium_fit(id: &str) -> Fit {
     }
 }
 
-fn extremes(run: &mut Run<'_>) {
+fn extremes(run: &mut Run) {
     let media = [
         ([0.0, 0.0, 0.0], [0.5, 0.5, 0.5]),
         ([1e-9, 1e-9, 1e-9], [1.0, 1.0, 1.0]),
