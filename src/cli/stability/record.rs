@@ -37,7 +37,7 @@ struct OutcomeRecord<'a> {
     left_out: Option<&'a str>,
     holds: bool,
     seconds: f64,
-    /// First parameter at which deviation and confidence together pass 1 %.
+    /// First parameter at which deviation or standard error pass 1 %.
     #[serde(skip_serializing_if = "Option::is_none")]
     passes_one_percent_at: Option<f64>,
     points: Vec<PointRecord<'a>>,

@@ -74,6 +74,8 @@ pub struct Point {
     pub deviation: f64,
     /// Half the width of the confidence interval, over the same size.
     pub confidence: f64,
+    /// Standard error over the same size.
+    pub standard_error: f64,
     /// Most that deviation and interval may be.
     pub bound: f64,
     /// Whether it holds; none if it is only reported.
@@ -129,9 +131,10 @@ impl Outcome {
         })
     }
 
-    /// The first parameter of each sweep from which on the error passes `limit`, if it does.
+    /// The first parameter at which deviation or standard error pass `limit`, if they do.
     pub fn passes(&self, limit: f64) -> Option<(&str, f64)> {
-        let beyond = self.points.iter().find(|p| !(p.error() <= limit))?;
+        let within = |p: &&Point| p.deviation <= limit && p.standard_error <= limit;
+        let beyond = self.points.iter().find(|p| !within(p))?;
         Some((&beyond.curve, beyond.x))
     }
 }
@@ -255,6 +258,7 @@ impl Run {
             exact,
             deviation,
             confidence,
+            standard_error: 0.0,
             bound,
             // What is no number is within no bound.
             holds: Some(deviation <= bound),

@@ -12,6 +12,9 @@ use crate::engine::session::{RenderClock, RenderJob, Renderer};
 pub const RUNS: u64 = 32;
 /// Rate at which a right answer is told to be wrong; a thousand answers are judged.
 const RATE: f64 = 1e-6;
+/// What none of n samples showed has a share of less than this over n of them, at [`RATE`]: −ln of
+/// it.
+const UNSEEN: f64 = 13.8;
 /// Share of a right answer that sums of `f32` numbers and their rounding cost.
 const ROUNDING: f64 = 2e-5;
 
@@ -58,7 +61,9 @@ impl Sampling {
 /// What is known of the mean of a picture.
 pub struct Estimate {
     mean: f64,
+    /// Half the confidence interval, and the share that samples so few may have left unseen.
     half: f64,
+    unseen: f64,
     /// The pixel farthest from the right value.
     farthest: f64,
     least: f64,
@@ -68,7 +73,7 @@ pub struct Estimate {
 }
 
 /// So many standard errors that a mean of [`RUNS`] runs is off by more at [`RATE`] only.
-pub fn confidence() -> f64 {
+pub fn confidence_factor() -> f64 {
     // The degrees of freedom are a positive constant: the distribution exists.
     StudentsT::new(0.0, 1.0, (RUNS - 1) as f64)
         .map_or(f64::NAN, |t| t.inverse_cdf(1.0 - RATE / 2.0))
@@ -79,7 +84,7 @@ pub fn mean_of(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-    (mean, confidence() * (squares / (n - 1.0) / n).sqrt())
+    (mean, confidence_factor() * (squares / (n - 1.0) / n).sqrt())
 }
 
 impl Estimate {
@@ -93,6 +98,7 @@ impl Estimate {
         let mut found = Self {
             mean: f64::NAN,
             half: f64::NAN,
+            unseen: 0.0,
             farthest: f64::NAN,
             least: f64::NAN,
             stats: RenderStats::default(),
@@ -109,14 +115,17 @@ impl Estimate {
                 }
             });
             passes += more;
+            more = passes.min(how.passes.1.saturating_sub(passes));
             found.look(&renderers, jobs.len(), exact, how);
             found.t_cpu = clock.cpu();
             let size = if exact == 0.0 { 1.0 } else { exact.abs() };
             found
                 .history
-                .push((found.t_cpu, found.half / confidence() / size));
-            more = passes.min(how.passes.1.saturating_sub(passes));
-            if more == 0 || found.half + how.rounding * size <= how.bound * size {
+                .push((found.t_cpu, found.half / confidence_factor() / size));
+            let samples = passes * runs * u64::from(jobs[0].size.x * jobs[0].size.y);
+            found.unseen = UNSEEN / samples as f64;
+            let known = found.half / size + found.unseen + how.rounding;
+            if more == 0 || known <= how.bound {
                 break;
             }
         }
@@ -156,7 +165,8 @@ impl Estimate {
         };
         let size = if exact == 0.0 { 1.0 } else { exact.abs() };
         let deviation = (measured - exact).abs() / size;
-        let confidence = self.half / size + how.rounding;
+        let unseen = if how.every_pixel { 0.0 } else { self.unseen };
+        let confidence = self.half / size + unseen + how.rounding;
         let mut faults = complaints(&self.stats);
         if self.least < 0.0 {
             faults.push(format!("a pixel is {:e}", self.least));
@@ -178,6 +188,7 @@ impl Estimate {
             bound: how.bound + how.bias,
             holds: Some(faults.is_empty()),
             note: faults.join("; "),
+            standard_error: self.half / size / confidence_factor(),
             t_cpu: self.t_cpu,
             history: if how.every_pixel {
                 Vec::new()

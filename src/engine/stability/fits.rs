@@ -16,6 +16,15 @@ const DEFAULT: Variant = with("", &[]);
 /// A few chains from a small bootstrap: each run has its own, and the spread of runs shows its
 /// error.
 const CHAINS: Variant = with("few chains", &[("chains", "16"), ("bootstrap", "2048")]);
+/// Maps that are built for nothing here, or bring little: small ones.
+const SMALL_MAPS: Variant = with(
+    "",
+    &[
+        ("global-photons", "1000"),
+        ("caustic-photons", "1000"),
+        ("volume-photons", "1000"),
+    ],
+);
 const MIS: Variant = with("mis", &[("mode", "mis")]);
 const KAJIYA: Variant = with("kajiya", &[("mode", "kajiya")]);
 const HITS: Variant = with("hits", &[("mode", "hits")]);
@@ -54,6 +63,7 @@ pub fn diffuse_in_sky(id: &str) -> Fit {
         "path" => Fit::Asked(&[HITS, MIS, KAJIYA]),
         "monte-carlo" => Fit::Asked(&[SINGLE]),
         "pssmlt" => Fit::Asked(&[CHAINS]),
+        "photon" => Fit::Asked(&[SMALL_MAPS]),
         ENGINE => Fit::LeftOut(""),
         _ => Fit::Asked(&[DEFAULT]),
     }
@@ -66,6 +76,7 @@ pub fn specular_only(id: &str) -> Fit {
         "light" => Fit::LeftOut("it is blind to all that is seen in a mirror or through glass"),
         "monte-carlo" => Fit::LeftOut("its depth ends at 16 events"),
         "pssmlt" => Fit::Asked(&[CHAINS]),
+        "photon" => Fit::Asked(&[SMALL_MAPS]),
         ENGINE => Fit::LeftOut(""),
         _ => Fit::Asked(&[DEFAULT]),
     }
@@ -88,7 +99,7 @@ pub fn closed_room(id: &str) -> Fit {
 
 const FRESH_MAPS: Variant = Variant {
     name: "fresh maps",
-    set: &[("fresh-maps", "on"), ("global-photons", "20000")],
+    set: &[("fresh-maps", "on"), ("global-photons", "10000")],
     bias: 0.02,
 };
 /// Its few photons a pass need wide discs; a disc of radius r cuts a cap that is r²/4 wider.
@@ -116,6 +127,7 @@ pub fn direct_point(id: &str) -> Fit {
         "path" => Fit::Asked(&[MIS, KAJIYA]),
         "monte-carlo" => Fit::Asked(&[SINGLE]),
         "pssmlt" => Fit::Asked(&[CHAINS]),
+        "photon" => Fit::Asked(&[SMALL_MAPS]),
         ENGINE => Fit::LeftOut(""),
         _ => Fit::Asked(&[DEFAULT]),
     }
@@ -128,6 +140,7 @@ pub fn direct_narrow(id: &str) -> Fit {
         "monte-carlo" => Fit::Asked(&[SINGLE]),
         "light" => Fit::LeftOut("no light path lands in so narrow a view by chance"),
         "pssmlt" => Fit::Asked(&[CHAINS]),
+        "photon" => Fit::Asked(&[SMALL_MAPS]),
         ENGINE => Fit::LeftOut(""),
         _ => Fit::Asked(&[DEFAULT]),
     }

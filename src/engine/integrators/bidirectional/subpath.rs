@@ -146,7 +146,7 @@ impl Walker<'_> {
         path: &mut Subpath,
         stats: &mut RenderStats,
     ) -> Option<Escape> {
-        let (pdf_pos, pdf_dir) = self.cx.camera.pdf_we(&ray);
+        let (pdf_pos, pdf_dir) = self.cx.camera.pdf_of_generated(&ray);
         path.restart(pdf_pos);
         let flight = Flight {
             ray,

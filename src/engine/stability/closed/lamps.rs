@@ -153,7 +153,13 @@ fn small(run: &mut Run) {
         } else {
             run.pick(0.02, 0.005)
         };
-        let how = Sampling::new(16, run.pick(1 << 14, 1 << 18), bound);
+        // Ten hits a run, at the least.
+        let first = if hits {
+            (4.0 * inverse * 10.0 * 3.15 / 4.0) as u64
+        } else {
+            16
+        };
+        let how = Sampling::new(first.max(16), run.pick(1 << 17, 1 << 20), bound);
         run.picture(inverse, "", &job, exact, &how);
     }
 }
