@@ -69,7 +69,7 @@ fn stored(scene: &Scene, roulette: Roulette, index: u64, photons: usize) -> f64 
 }
 
 fn power(run: &mut Run) {
-    let albedos: &[f32] = run.pick(&[0.5, 0.9, 0.99], &[0.5, 0.9, 0.99, 0.999]);
+    let albedos: &[f32] = run.pick(&[0.5, 0.9], &[0.5, 0.9, 0.99, 0.999]);
     for (name, roulette) in [
         ("power kept", Roulette::Keep),
         ("power lost", Roulette::Lose),

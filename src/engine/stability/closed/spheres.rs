@@ -109,8 +109,13 @@ fn point_fit(id: &str) -> Fit {
 
 fn point(run: &mut Run) {
     let rho = 0.75_f32;
-    let step = run.pick(6, 3);
-    for radius in decades(-6..=6, step) {
+    let slow = matches!(run.id(), "photon" | "pssmlt");
+    let exponents = if slow && run.depth == Depth::Quick {
+        0..=0
+    } else {
+        -6..=6
+    };
+    for radius in decades(exponents, run.pick(6, 3)) {
         let mut desc = inside(rho, radius as f32, 0.0);
         let r = f64::from(radius as f32);
         // As much light on the wall whatever its size.
