@@ -184,6 +184,10 @@ pub fn caustic_point(id: &str) -> Fit {
 
 const FRESH_CAUSTICS: Variant = Variant {
     name: "fresh maps",
-    set: &[("fresh-maps", "on"), ("caustic-photons", "20000")],
+    set: &[
+        ("fresh-maps", "on"),
+        ("caustic-photons", "5000"),
+        ("global-photons", "1000"),
+    ],
     bias: 0.02,
 };

@@ -165,7 +165,7 @@ fn ior(run: &mut Run) {
                 continue;
             }
             let desc = SceneDesc {
-                camera: view(Vec3::Z * 6.0, Vec3::ZERO, 15.0, 4),
+                camera: view(Vec3::Z * 6.0, Vec3::ZERO, 10.0, 4),
                 materials: vec![diffuse("white", rho), glass("inner", n), glass("outer", n)],
                 spheres: vec![
                     sphere(0, Vec3::ZERO, 1.0, false),

@@ -131,7 +131,7 @@ fn faceted(rows: u32) -> MeshDesc {
 fn normals(run: &mut Run) {
     for rows in [3, 4, 8] {
         let desc = SceneDesc {
-            camera: view(Vec3::new(0.5, 1.0, 4.0), Vec3::ZERO, 25.0, 8),
+            camera: view(Vec3::new(0.5, 1.0, 4.0), Vec3::ZERO, 8.0, 8),
             materials: vec![diffuse("white", 0.8)],
             meshes: vec![faceted(rows)],
             lights: vec![sky(1.0)],
@@ -190,7 +190,7 @@ fn metropolis(run: &mut Run) {
             .lights
             .push(point_light(Vec3::new(x, 1.0, 2.0), power));
     }
-    let thin = Vec3::new(0.01, 9.0, 9.0);
+    let thin = Vec3::new(0.01, 9.0, 4.0);
     islands.meshes.push(block(1, -thin, thin));
     let path = job_of(&integrators::path::ENTRY, &[("mode", "kajiya")], &islands);
     let (exact, half) = mean_of(&means(&path, run.pick(64, 512)));
