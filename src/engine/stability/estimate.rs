@@ -142,7 +142,7 @@ impl Estimate {
             let pixels = &frame.layers[how.layer].pixels;
             let values = pixels.iter().flatten().map(|x| f64::from(*x));
             for value in values.clone() {
-                if !((value - exact).abs() <= (self.farthest - exact).abs()) {
+                if value.is_nan() || (value - exact).abs() > (self.farthest - exact).abs() {
                     self.farthest = value;
                 }
                 self.least = self.least.min(value);
@@ -171,10 +171,10 @@ impl Estimate {
         if self.least < 0.0 {
             faults.push(format!("a pixel is {:e}", self.least));
         }
-        // Comparisons that fail for what is no number.
-        if !(deviation <= confidence + how.bias) {
+        // What is no number is wrong.
+        if deviation.is_nan() || confidence.is_nan() || deviation > confidence + how.bias {
             faults.push(format!("{measured:e} is not {exact:e}"));
-        } else if !(confidence <= how.bound) {
+        } else if confidence > how.bound {
             let percent = 100.0 * confidence;
             faults.push(format!("known to {percent:.2} % only"));
         }

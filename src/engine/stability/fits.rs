@@ -98,14 +98,10 @@ pub fn closed_room(id: &str) -> Fit {
 }
 
 /// The metric of its discs counts heights sixteen times: on a sphere of radius R that loses
-/// 15 r²/(4R²) of the photons within r, at ten of ten thousand photons 2 %.
+/// 15 r²/(4R²) of the photons within r, at fifty of fifty thousand photons 2 %.
 const FRESH_MAPS: Variant = Variant {
     name: "fresh maps",
-    set: &[
-        ("fresh-maps", "on"),
-        ("global-photons", "10000"),
-        ("nearest", "10"),
-    ],
+    set: &[("fresh-maps", "on"), ("global-photons", "50000")],
     bias: 0.03,
 };
 /// Its few photons a pass need wide discs; a disc of radius r cuts a cap that is r²/4 wider.

@@ -14,7 +14,7 @@ mod closed;
 pub mod estimate;
 mod extremes;
 mod fits;
-mod oracles;
+pub mod oracles;
 pub mod scenes;
 
 pub use case::{Case, Depth, Fit, Outcome, Point, Variant, run};

@@ -123,7 +123,11 @@ fn point(run: &mut Run) {
         desc.lights.push(point_light(Vec3::ZERO, intensity));
         let direct = f64::from(rho) * f64::from(intensity) / (PI * r * r);
         let job = run.job(&desc);
-        let how = Sampling::new(4, 2048, run.pick(0.02, 0.005));
+        // A map is built for each pass of photon mapping.
+        let how = match run.id() {
+            "photon" => Sampling::new(1, run.pick(1, 64), run.pick(0.08, 0.03)),
+            _ => Sampling::new(4, 2048, run.pick(0.02, 0.005)),
+        };
         // What is emitted here is direct light: k events bring ρ^(k−1) of it.
         let total = match run.id() {
             "whitted" => direct,

@@ -94,7 +94,7 @@ fn sizes(run: &mut Run) {
         // The widest view has an angle of 4096 · 1e-4 degrees.
         let how = Sampling {
             rounding: 1e-4,
-            ..Sampling::new(1, 64, 0.02)
+            ..Sampling::new(1, 64, 0.05)
         };
         run.picture(pixels, "", &job, exact, &how);
     }
@@ -143,10 +143,16 @@ fn empty(run: &mut Run) {
         let mut job = run.job(desc);
         job.settings.layers.max_depth = depth;
         let found = frame(&job, 0, 2);
-        let values = found
-            .iter()
-            .flat_map(|f| f.layers[0].pixels.iter().flatten());
-        let off = values.map(|x| (f64::from(*x) - exact).abs());
+        // Chains share their states out over the pixels: their mean is known.
+        let values: Vec<f64> = match (&found, run.id()) {
+            (Some(f), "pssmlt") => vec![mean_of_layer(f, 0)],
+            (Some(f), _) => {
+                let pixels = f.layers[0].pixels.iter().flatten();
+                pixels.map(|x| f64::from(*x)).collect()
+            }
+            (None, _) => Vec::new(),
+        };
+        let off = values.into_iter().map(|x| (x - exact).abs());
         let off = off.fold(0.0, |most: f64, d| if d <= most { most } else { d });
         let off = if found.is_none() { f64::NAN } else { off };
         run.value((i + 1) as f64, name, off, 0.0, 1e-6);

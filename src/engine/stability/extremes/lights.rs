@@ -164,6 +164,17 @@ fn unsampleable(run: &mut Run) {
     let missing = (entry.missing)(&job.scene.features, &job.settings.params);
     let said = missing.and_then(|m| m.words.parse::<Expression>().ok());
     let classes = said.and_then(|e| PathClasses::new(vec!["said".to_owned()], vec![e]).ok());
+    let named = WORDS.map(|word| {
+        let letters = word.chars().filter_map(|c| match c {
+            'D' => Some(Letter::D),
+            'S' => Some(Letter::S),
+            _ => None,
+        });
+        classes.as_ref().is_some_and(|classes| {
+            let class = letters.fold(ClassId::EMPTY, |c, l| classes.append(c, l));
+            classes.layers(class) != 0
+        })
+    });
     // Rare words take many passes: black is what stays black.
     let mut seen = [false; WORDS.len()];
     let seeds = run.pick(64, 512);
@@ -175,21 +186,12 @@ fn unsampleable(run: &mut Run) {
         for (i, seen) in seen.iter_mut().enumerate() {
             *seen |= mean_of_layer(&found, first + i) > 0.0;
         }
-        if seed > 1 && seen.iter().all(|s| *s) {
+        if seed > 1 && seen == named.map(|named| !named) {
             break;
         }
     }
     for (i, word) in WORDS.iter().enumerate() {
-        let black = !seen[i];
-        let letters = word.chars().filter_map(|c| match c {
-            'D' => Some(Letter::D),
-            'S' => Some(Letter::S),
-            _ => None,
-        });
-        let named = classes.as_ref().is_some_and(|classes| {
-            let class = letters.fold(ClassId::EMPTY, |c, l| classes.append(c, l));
-            classes.layers(class) != 0
-        });
+        let (black, named) = (!seen[i], named[i]);
         let note = format!("{word} is {}", if black { "black" } else { "found" });
         run.count((i + 1) as f64, word, u64::from(black != named), 1, &note);
     }

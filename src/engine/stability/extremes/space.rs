@@ -101,6 +101,9 @@ fn translate_fit(id: &str) -> Fit {
     match id {
         "monte-carlo" | "whitted" => Fit::LeftOut("their words are too short for the closed form"),
         "pssmlt" => Fit::LeftOut("it runs over bdpt, which is asked"),
+        "photon" => {
+            Fit::LeftOut("sphere-point asks its maps; here the geometry is asked, which all share")
+        }
         _ => fits::closed_room_point(id),
     }
 }

@@ -139,9 +139,15 @@ fn normals(run: &mut Run) {
         };
         let hits = job_of(&integrators::path::ENTRY, &[("mode", "hits")], &desc);
         let (exact, half) = mean_of(&means(&hits, run.pick(256, 2048)));
+        // Few light paths land in the view.
+        let bound = if run.id() == "light" {
+            0.06
+        } else {
+            run.pick(0.03, 0.01)
+        };
         let how = Sampling {
             rounding: 2e-5 + half / exact,
-            ..Sampling::new(16, run.pick(1024, 8192), run.pick(0.03, 0.01))
+            ..Sampling::new(16, run.pick(1024, 8192), bound)
         };
         let job = run.job(&desc);
         run.picture(f64::from(rows), "", &job, exact, &how);

@@ -68,7 +68,7 @@ fn extremes(run: &mut Run) {
                 let found = frame(&run.job(&desc), 0, run.pick(1, 4));
                 let faults = found.map_or(vec!["not rendered".to_owned()], |found| {
                     let pixels = found.layers[0].pixels.iter().flatten();
-                    let negative = pixels.filter(|x| !(**x >= 0.0)).count();
+                    let negative = pixels.filter(|x| x.is_nan() || **x < 0.0).count();
                     let mut faults = complaints(&found.stats);
                     if negative > 0 {
                         faults.push(format!("{negative} values below 0"));
