@@ -103,9 +103,6 @@ fn power(run: &mut Run) {
 fn lens_fit(id: &str) -> Fit {
     match id {
         "pssmlt" => Fit::LeftOut("it runs over bdpt, which is asked"),
-        "photon" => Fit::LeftOut(
-            "the blur of its discs has no closed form here; photon-power asks what it stores",
-        ),
         _ => fits::caustic_point(id),
     }
 }

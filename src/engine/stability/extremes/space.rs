@@ -125,7 +125,7 @@ fn translate(run: &mut Run) {
             ..SceneDesc::default()
         };
         let exact = f64::from(rho) * f64::from(intensity) / (PI * (1.0 - f64::from(rho)));
-        let how = Sampling::new(16, run.pick(256, 2048), run.pick(0.02, 0.01));
+        let how = Sampling::new(16, run.pick(1024, 8192), run.pick(0.02, 0.01));
         let job = run.job(&desc);
         if offset > 2e3 {
             run.report(offset, "", &job, exact, &how);
