@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3, Vec3A};
 use lightscope::engine::geometry::{DropReport, Geometry, Hit, MeshInput, Ray, SphereInput};
 use lightscope::engine::sampling::sampler::Sampler;
+use lightscope::engine::stability::scenes::bumpy_sphere;
 
 #[path = "support/rays.rs"]
 mod rays;
@@ -87,42 +88,9 @@ fn an_empty_scene_is_never_hit() {
     assert_eq!(empty.primitive_count(), 0);
 }
 
-/// A closed mesh: a sphere of `n` rows, bumpy, so that it is not convex.
-fn closed_mesh(n: u32, scale: f32, center: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    use std::f32::consts::PI;
-    let mut positions = vec![Vec3::Y, Vec3::NEG_Y];
-    for row in 1..n {
-        for column in 0..2 * n {
-            let (theta, phi) = (PI * row as f32 / n as f32, PI * column as f32 / n as f32);
-            let bump = 1.0 + 0.2 * (5.0 * phi).sin() * (4.0 * theta).sin();
-            let d = Vec3::new(
-                theta.sin() * phi.cos(),
-                theta.cos(),
-                theta.sin() * phi.sin(),
-            );
-            positions.push(bump * d);
-        }
-    }
-    let at = |row: u32, column: u32| 2 + (row - 1) * 2 * n + column % (2 * n);
-    let mut triangles = Vec::new();
-    for column in 0..2 * n {
-        triangles.push([0, at(1, column + 1), at(1, column)]);
-        triangles.push([1, at(n - 1, column), at(n - 1, column + 1)]);
-        for row in 1..n - 1 {
-            let (a, b) = (at(row, column), at(row, column + 1));
-            let (c, d) = (at(row + 1, column), at(row + 1, column + 1));
-            triangles.extend([[a, b, d], [a, d, c]]);
-        }
-    }
-    for p in &mut positions {
-        *p = center + scale * *p;
-    }
-    (positions, triangles)
-}
-
 /// Rays from inside towards vertices and edges of a closed mesh; returns how many got out.
 fn leaks(rays: u64, scale: f32, center: Vec3) -> usize {
-    let (positions, triangles) = closed_mesh(24, scale, center);
+    let (positions, triangles) = bumpy_sphere(24, scale, center);
     let (geometry, report) = build(&positions, &triangles);
     assert_eq!(report, DropReport::default());
     let mut s = sampler(2);
@@ -194,7 +162,7 @@ fn a_ray_in_the_plane_of_a_quad_misses_it() {
 fn hits_scale_with_powers_of_two_to_the_bit() {
     let trace = |exponent: i32| -> Vec<Option<(u32, u32, u32, u32)>> {
         let k = 2.0_f32.powi(exponent);
-        let (positions, triangles) = closed_mesh(8, k, Vec3::ZERO);
+        let (positions, triangles) = bumpy_sphere(8, k, Vec3::ZERO);
         let mesh = MeshInput {
             positions: &positions,
             triangles: &triangles,

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use lightscope::engine::film::Frame;
 use lightscope::engine::scene::Scene;
 use lightscope::engine::session::RenderJob;
+use lightscope::engine::stability::oracles::chandrasekhar_h;
 use support::agreement::mean;
 use support::reference::{assert_agree, runs_of};
 use support::render::{job, render, scene_from_toml};
@@ -274,31 +275,6 @@ fn slab_conservative() {
         assert!(t < last && t > 0.0, "τ = {tau}: transmits {t}");
         last = t;
     }
-}
-
-/// Chandrasekhar's H for isotropic scattering of albedo ϖ, at 64 Gauss points and any μ: iteration
-/// of 1/H(μ) = √(1−ϖ) + ϖ/2 ∫ μ′ H(μ′)/(μ + μ′) dμ′ (*Radiative Transfer*, 1950, sections 33, 41).
-fn chandrasekhar_h(albedo: f64) -> impl Fn(f64) -> f64 {
-    let n = 400;
-    let nodes: Vec<f64> = (0..n)
-        .map(|i| (f64::from(i) + 0.5) / f64::from(n))
-        .collect();
-    let mut values = vec![1.0; nodes.len()];
-    let evaluate = move |values: &[f64], nodes: &[f64], mu: f64| {
-        let sum: f64 = nodes
-            .iter()
-            .zip(values)
-            .map(|(x, h)| x * h / (mu + x))
-            .sum();
-        1.0 / ((1.0 - albedo).sqrt() + 0.5 * albedo * sum / nodes.len() as f64)
-    };
-    for _ in 0..200 {
-        values = nodes
-            .iter()
-            .map(|mu| evaluate(&values, &nodes, *mu))
-            .collect();
-    }
-    move |mu| evaluate(&values, &nodes, mu)
 }
 
 #[test]

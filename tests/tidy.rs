@@ -178,6 +178,7 @@ fn modules_use_only_what_stands_left_of_them() {
         &["film", "integrators"],
         &["session"],
         &["measure"],
+        &["stability"],
     ];
     let rank = |path: &str| {
         ORDER.iter().enumerate().rev().find_map(|(rank, modules)| {

@@ -2,6 +2,7 @@
 
 mod measuring;
 mod replay;
+mod stability;
 
 use std::path::PathBuf;
 
@@ -14,6 +15,7 @@ use crate::engine::measure::Region;
 use super::suggest::did_you_mean;
 pub use measuring::{ReferenceArgs, ReportArgs};
 pub use replay::ReplayArgs;
+pub use stability::StabilityArgs;
 
 /// Renders scenes by global illumination. Without a command it opens the window.
 #[derive(Debug, Parser)]
@@ -39,6 +41,8 @@ pub enum Command {
     Reference(ReferenceArgs),
     /// Follow one sample of a render again, step by step.
     Replay(ReplayArgs),
+    /// Prove the limits of this program on this machine: stiff and extreme cases.
+    Stability(StabilityArgs),
     /// List what there is to choose from.
     List(ListArgs),
     /// Say what a scene or a picture holds.
@@ -147,7 +151,7 @@ pub struct CompareArgs {
 #[derive(Debug, Args)]
 pub struct ListArgs {
     /// What to list.
-    #[arg(value_name = "scenes|integrators")]
+    #[arg(value_name = "scenes|integrators|cases")]
     pub what: Listing,
     /// Print JSON.
     #[arg(long)]
@@ -161,6 +165,8 @@ pub enum Listing {
     Scenes,
     /// The algorithms and their parameters.
     Integrators,
+    /// The cases of `stability`.
+    Cases,
 }
 
 /// Arguments of `info`.

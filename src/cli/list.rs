@@ -7,6 +7,8 @@ use super::error::CliError;
 use super::{print, scene};
 use crate::engine::integrators::{Entry, Missing, ParamKind, ParamSpec, Params, REGISTRY};
 use crate::engine::scene::SceneFeatures;
+use crate::engine::stability::case::ENGINE;
+use crate::engine::stability::{self, Case, Fit};
 
 /// Runs the command.
 pub fn run(args: &ListArgs) -> Result<(), CliError> {
@@ -15,6 +17,14 @@ pub fn run(args: &ListArgs) -> Result<(), CliError> {
         Listing::Integrators => {
             let rows: Vec<Row> = REGISTRY.iter().map(integrator).collect();
             show(&rows, args.json, details)
+        }
+        Listing::Cases => {
+            let rows: Vec<Row> = stability::cases().into_iter().map(case).collect();
+            show(&rows, args.json, |row| {
+                let oracle = row.oracle.iter().map(|o| format!("right is: {o}"));
+                let asked = row.asked.iter().map(|a| format!("asks {}", a.join(", ")));
+                oracle.chain(asked).collect()
+            })
         }
     }
 }
@@ -37,6 +47,12 @@ pub struct Row {
     /// Whether scenes with participating media can be rendered, of integrators only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub media: Option<bool>,
+    /// The right answer, of cases only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub oracle: Option<&'static str>,
+    /// What is asked, of cases only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub asked: Option<Vec<&'static str>>,
 }
 
 /// A parameter.
@@ -102,6 +118,23 @@ fn integrator(entry: &Entry) -> Row {
         params: Some(entry.params.iter().map(param).collect()),
         missing: Some(missing(entry)),
         media: Some(entry.media),
+        oracle: None,
+        asked: None,
+    }
+}
+
+fn case(case: &Case) -> Row {
+    let ids = std::iter::once(ENGINE).chain(REGISTRY.iter().map(|e| e.id));
+    let asked = ids.filter(|id| matches!((case.fit)(id), Fit::Asked(_)));
+    Row {
+        id: case.id.to_owned(),
+        label: case.label.to_owned(),
+        summary: case.summary.to_owned(),
+        params: None,
+        missing: None,
+        media: None,
+        oracle: Some(case.oracle),
+        asked: Some(asked.collect()),
     }
 }
 

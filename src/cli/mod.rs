@@ -18,6 +18,7 @@ mod render;
 mod replay;
 mod report;
 mod scene;
+mod stability;
 mod suggest;
 
 use std::process::ExitCode;
@@ -61,6 +62,7 @@ fn run(cli: Cli) -> Result<(), CliError> {
         Some(Command::Report(args)) => report::run(&args),
         Some(Command::Reference(args)) => reference::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
+        Some(Command::Stability(args)) => stability::run(&args),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args.what),

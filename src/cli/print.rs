@@ -69,6 +69,14 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// Text that HTML shows as it is.
+pub fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

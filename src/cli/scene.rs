@@ -68,6 +68,8 @@ pub fn listed() -> Result<Vec<Row>, CliError> {
             params: None,
             missing: None,
             media: None,
+            oracle: None,
+            asked: None,
         })
     };
     embedded::all().iter().map(row).collect()

@@ -267,11 +267,20 @@ impl Camera {
     #[inline]
     pub fn pdf_we(&self, ray: &Ray) -> (f32, f32) {
         let pdf_pos = 1.0 / self.lens_area();
-        if self.project(self.lens_from_world(ray.o), ray.d).is_none() {
-            return (pdf_pos, 0.0);
+        match self.project(self.lens_from_world(ray.o), ray.d) {
+            Some(_) => self.pdf_of_generated(ray),
+            None => (pdf_pos, 0.0),
         }
+    }
+
+    /// The same of a ray that [`Camera::generate_ray`] drew: it is on the film. To project it back
+    /// would lose those at the border that rounding carries beyond it, in a narrow view a share
+    /// that shows.
+    #[inline]
+    pub fn pdf_of_generated(&self, ray: &Ray) -> (f32, f32) {
         let cos = ray.d.dot(self.forward);
-        (pdf_pos, 1.0 / (self.film_area() * cos * cos * cos))
+        let pdf_dir = 1.0 / (self.film_area() * cos * cos * cos);
+        (1.0 / self.lens_area(), pdf_dir)
     }
 
     /// Samples the lens as seen from `p`; `None` if `p` is not in the picture.

@@ -2,7 +2,7 @@
 //!
 //! A module uses only what stands before it in this list:
 //! math < sampling < geometry < {bsdf, light, media, camera} < scene < path < photon < plan <
-//! {film, integrators} < session < measure. `io` uses `scene::desc` only.
+//! {film, integrators} < session < measure < stability. `io` uses `scene::desc` only.
 
 pub mod bsdf;
 pub mod camera;
@@ -21,3 +21,4 @@ pub mod plan;
 pub mod sampling;
 pub mod scene;
 pub mod session;
+pub mod stability;

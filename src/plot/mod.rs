@@ -35,6 +35,8 @@ pub struct Chart {
     pub curves: Vec<Curve>,
     /// A horizontal line.
     pub target: Option<f64>,
+    /// Whether x is time or work, along which errors fall with slope −1/2: a line shows it.
+    pub guided: bool,
 }
 
 impl Chart {
@@ -72,6 +74,9 @@ impl Chart {
 
     /// The guide of slope −1/2 through the first point of the first curve that has one.
     pub fn guide(&self) -> Option<[(f64, f64); 2]> {
+        if !self.guided {
+            return None;
+        }
         let [[left, right], _] = self.ranges()?;
         let shown = |p: &&(f64, f64)| is_shown(p.0) && is_shown(p.1);
         let first = self
@@ -136,6 +141,7 @@ mod tests {
             y_label: "error".to_owned(),
             curves: vec![curve("path", 0.5), curve("a, b", 0.25)],
             target: Some(0.01),
+            guided: true,
         }
     }
 

@@ -1,7 +1,7 @@
 //! `lightscope report`: algorithms against each other, on a page of its own.
 
 mod images;
-mod machine;
+pub(super) mod machine;
 mod options;
 mod page;
 mod progress;

@@ -11,7 +11,7 @@ use super::options::{ReportOptions, Subject};
 use super::store::{Key, Store};
 use super::summary::{Contestant, SceneSummary};
 use crate::cli::error::CliError;
-use crate::cli::print::{duration, figure};
+use crate::cli::print::{duration, escape, figure};
 use crate::picture::colors;
 use crate::plot::{Chart, Curve, svg};
 
@@ -43,6 +43,7 @@ pub fn plot(scene: &SceneSummary, target: f64) -> Result<String, String> {
         },
         curves: curves.collect(),
         target: Some(target),
+        guided: true,
     };
     svg(&chart, [980, 560])
 }
@@ -287,12 +288,4 @@ fn pictures(
             figure(&store.image_path(&key, "error"), &caption);
         }
     }
-}
-
-/// Text that HTML shows as it is.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }

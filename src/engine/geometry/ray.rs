@@ -31,7 +31,9 @@ impl Ray {
         let t = to.length();
         Self {
             o,
-            d: to / t,
+            // Between two points that `f32` does not tell apart there is nothing: the ray ends
+            // where it begins, whatever its direction.
+            d: if t > 0.0 { to / t } else { Vec3A::X },
             t_max: t * (1.0 - SHADOW_SHORTENING),
         }
     }

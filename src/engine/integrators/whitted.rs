@@ -18,7 +18,7 @@ use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
 use crate::engine::integrators::replay::{RadianceSink, Step};
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
-use crate::engine::sampling::Sampler;
+use crate::engine::sampling::{MAX_SURVIVAL, Sampler};
 use crate::engine::scene::features::SceneFeatures;
 
 /// Registry entry.
@@ -56,8 +56,6 @@ const PARAMS: &[ParamSpec] = &[
 const MAX_EVENTS: u32 = 10_000_000;
 /// Dimensions reserved per ray: 0 event, 1 roulette, 2–3 lights, 7 opacity.
 const RAY_DIMENSIONS: u32 = 8;
-/// Survival of rays that lost nothing: with 1 a ray between perfect mirrors would not end.
-const MAX_SURVIVAL: f32 = 0.98;
 /// Rays that wait: at most seven more for each event followed by all of up to eight lobes.
 const MAX_WAITING: usize = 64;
 

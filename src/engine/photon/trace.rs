@@ -7,7 +7,7 @@ use crate::engine::event::{Event, Letter};
 use crate::engine::geometry::{Departure, Ray, RayFault, SurfaceInteraction};
 use crate::engine::math::Rgb;
 use crate::engine::path::{ClassId, PathClasses};
-use crate::engine::sampling::Sampler;
+use crate::engine::sampling::{MAX_SURVIVAL, Sampler};
 use crate::engine::scene::Scene;
 
 /// Which photons a walk keeps. Together the maps hold every prefix once (rule 7 of the code map).
@@ -34,10 +34,9 @@ pub enum Roulette {
 
 /// The share of its first power below which a photon that loses power plays roulette.
 const FAINT: f32 = 1e-3;
-/// A photon that lost nothing in so many events would not end between perfect mirrors.
+/// A photon that lost nothing in so many events would not end between perfect mirrors: from then on
+/// it survives with [`MAX_SURVIVAL`] at most.
 const LOSSLESS_EVENTS: u32 = 64;
-/// Survival from then on.
-const MAX_SURVIVAL: f32 = 0.98;
 /// Most events of a path; beyond, it is cut and counted.
 pub(super) const MAX_PATH_EVENTS: u32 = 10_000_000;
 /// Dimensions reserved a vertex.

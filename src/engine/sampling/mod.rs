@@ -6,11 +6,13 @@
 pub mod independent;
 pub mod mis;
 pub mod primary_space;
+pub mod roulette;
 pub mod sampler;
 pub mod sobol;
 pub mod warp;
 
 pub use independent::IndependentSampler;
 pub use primary_space::{PrimarySpace, StepKey};
+pub use roulette::MAX_SURVIVAL;
 pub use sampler::{Sampler, Stream};
 pub use sobol::SobolSampler;

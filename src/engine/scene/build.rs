@@ -48,6 +48,7 @@ impl Scene {
                 "{covered} of the shapes that emit lie exactly on others and are left out"
             ));
         }
+        warnings.extend(super::limits::warnings(desc, &lights));
         let features = features(desc, &materials, &lights, &media);
         if !features.hittable_lights && !features.zero_size_lights && !features.shining_media {
             warnings.push("nothing in this scene emits light, so the picture is black".to_owned());

@@ -5,6 +5,7 @@ pub mod build;
 pub mod desc;
 
 pub mod features;
+mod limits;
 pub mod material;
 pub mod passage;
 mod prepared;

@@ -256,6 +256,7 @@ impl Measuring {
             },
             curves: self.curves.plotted(self.along, measured),
             target: Some(target),
+            guided: true,
         }
     }
 

@@ -14,7 +14,7 @@ use crate::engine::math::Rgb;
 use crate::engine::media::{Draws, Inside};
 use crate::engine::path::ClassId;
 use crate::engine::plan::RenderPlan;
-use crate::engine::sampling::Sampler;
+use crate::engine::sampling::{MAX_SURVIVAL, Sampler};
 
 /// Dimensions reserved per vertex: direction 0–1, event 2, roulette 3, light or lens 4–5, choice of
 /// a light 6, opacity 7; in media channel and distance 8–9, seeds of the flight 10–11.
@@ -28,8 +28,6 @@ pub fn vertex_dimensions(plan: &RenderPlan) -> u32 {
 pub const FIRST_LIGHT_VERTEX: u32 = 8;
 /// Most events of a walk; beyond, it is cut and counted.
 const MAX_EVENTS: usize = 10_000_000;
-/// Survival of walks that lost nothing: with 1 a walk between perfect mirrors would not end.
-const MAX_SURVIVAL: f32 = 0.98;
 
 /// A subpath. Vertex 0, the lens or the light, has densities only.
 #[derive(Clone, Debug, Default)]
@@ -148,7 +146,7 @@ impl Walker<'_> {
         path: &mut Subpath,
         stats: &mut RenderStats,
     ) -> Option<Escape> {
-        let (pdf_pos, pdf_dir) = self.cx.camera.pdf_we(&ray);
+        let (pdf_pos, pdf_dir) = self.cx.camera.pdf_of_generated(&ray);
         path.restart(pdf_pos);
         let flight = Flight {
             ray,

@@ -11,15 +11,12 @@ use crate::engine::integrators::tiled::{CAMERA_DIMENSIONS, RayIntegrator};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
-use crate::engine::sampling::{Sampler, mis};
+use crate::engine::sampling::{MAX_SURVIVAL, Sampler, mis};
 
 /// Most events of a path; beyond, it is cut and counted.
 pub(super) const MAX_EVENTS: u32 = 10_000_000;
 /// Dimensions reserved per vertex: four for the walk, four for the shadow ray.
 const VERTEX_DIMENSIONS: u32 = 8;
-/// Survival of paths that lost nothing: with 1 a walk between perfect mirrors would not end.
-/// In a closed room of albedo ρ the variance is finite while ρ² is below it: up to ρ = 0.99995.
-const MAX_SURVIVAL: f32 = 0.9999;
 
 /// The state of a walk between two vertices.
 pub(in crate::engine::integrators) struct Walk {

@@ -15,7 +15,7 @@ use crate::engine::math::hash::combine;
 use crate::engine::path::ClassId;
 use crate::engine::photon::irradiance_cache::{ClassSums, IrradianceCache, add_to};
 use crate::engine::photon::{Disc, Nearest, PhotonMap, PhotonMaps};
-use crate::engine::sampling::{IndependentSampler, Sampler, Stream};
+use crate::engine::sampling::{IndependentSampler, MAX_SURVIVAL, Sampler, Stream};
 
 /// Most events of a path; beyond, it is cut and counted.
 const MAX_EVENTS: u32 = 10_000_000;
@@ -23,8 +23,6 @@ const MAX_EVENTS: u32 = 10_000_000;
 pub(super) const VERTEX_DIMENSIONS: u32 = 8;
 /// Dimensions from here on seed the numbers of gather rays, two a vertex.
 const GATHER_DIMENSIONS: u32 = 1 << 20;
-/// Survival of walks that lost nothing: with 1 a walk between perfect mirrors would not end.
-pub(super) const MAX_SURVIVAL: f32 = 0.98;
 /// Events after which roulette may end a walk.
 pub(super) const ROULETTE_EVENTS: u32 = 2;
 

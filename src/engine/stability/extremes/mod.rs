@@ -1,0 +1,43 @@
+//! Cases at the ends of what numbers hold, and what must hold there.
+
+mod film;
+mod jobs;
+mod lights;
+mod photons;
+mod rays;
+mod scattering;
+mod space;
+mod vertices;
+mod volume;
+
+use super::case::Case;
+
+/// In the order of the table.
+pub const CASES: &[&Case] = &[
+    &space::SCALE,
+    &space::TRANSLATE,
+    &space::TELEPHOTO,
+    &rays::AXIS,
+    &rays::WATERTIGHT,
+    &rays::DEGENERATE,
+    &rays::COINCIDENT,
+    &rays::THIN,
+    &vertices::NORMALS,
+    &lights::RANGE,
+    &lights::TOUCHING,
+    &lights::UNSAMPLEABLE,
+    &scattering::GGX,
+    &scattering::IOR,
+    &scattering::ENDS,
+    &vertices::NEAR,
+    &vertices::METROPOLIS,
+    &volume::MEDIUM,
+    &photons::TREE,
+    &photons::ESTIMATE,
+    &film::ACCUMULATE,
+    &film::ROULETTE,
+    &jobs::SIZES,
+    &jobs::EMPTY,
+    &jobs::THREADS,
+    &jobs::LAYERS,
+];
