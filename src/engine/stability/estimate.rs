@@ -72,7 +72,7 @@ pub struct Estimate {
     history: Vec<(f64, f64)>,
 }
 
-/// So many standard errors that a mean of [`RUNS`] runs is off by more at [`RATE`] only.
+/// So many standard errors that a mean of [`RUNS`] runs is off by more at a rate of 10⁻⁶ only.
 pub fn confidence_factor() -> f64 {
     // The degrees of freedom are a positive constant: the distribution exists.
     StudentsT::new(0.0, 1.0, (RUNS - 1) as f64)
