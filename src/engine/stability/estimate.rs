@@ -5,6 +5,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::case::Point;
 use crate::engine::film::Frame;
+use crate::engine::integrators::stats::ERRORS;
 use crate::engine::integrators::{Cancel, RenderStats};
 use crate::engine::session::{RenderClock, RenderJob, Renderer};
 
@@ -209,8 +210,6 @@ fn renderer(job: &RenderJob, seed: u64) -> Option<Renderer> {
 /// What a render counts and no scene of the cases may bring about.
 pub fn complaints(stats: &RenderStats) -> Vec<String> {
     let counts = [
-        (stats.non_finite(), "samples that are not finite"),
-        (stats.cut_paths, "paths that were cut"),
         (
             stats.exceeded_majorants,
             "bounds of a medium that were exceeded",
@@ -218,7 +217,14 @@ pub fn complaints(stats: &RenderStats) -> Vec<String> {
         (stats.cut_trees, "trees of rays that were cut"),
     ];
     let some = counts.iter().filter(|(n, _)| *n > 0);
-    some.map(|(n, what)| format!("{n} {what}")).collect()
+    let errors = stats.errors().into_iter().zip(ERRORS);
+    some.map(|(n, what)| format!("{n} {what}"))
+        .chain(
+            errors
+                .filter(|(n, _)| *n > 0)
+                .map(|(n, what)| format!("{n} samples of which {what}")),
+        )
+        .collect()
 }
 
 /// One run of a job: its frame after `passes` passes; none if it cannot be rendered.
