@@ -54,6 +54,8 @@ const PARAMS: &[ParamSpec] = &[
 
 /// Most specular events of a path; beyond, it is cut and counted.
 const MAX_EVENTS: u32 = 10_000_000;
+/// Events before a ray of which one lobe is drawn plays roulette.
+const ROULETTE_EVENTS: u32 = 4;
 /// Dimensions reserved per ray: 0 event, 1 roulette, 2–3 lights, 7 opacity.
 const RAY_DIMENSIONS: u32 = 8;
 /// Rays that wait: at most seven more for each event followed by all of up to eight lobes.
@@ -252,7 +254,7 @@ impl Whitted {
                 kept: branch.kept * weight * (sample.eta * sample.eta),
                 departure: si.departure(sample.wi),
             };
-            if !all {
+            if !all && next.depth > ROULETTE_EVENTS {
                 let survival = next.kept.max_component().min(MAX_SURVIVAL);
                 if !stats.play(u.y < survival) {
                     continue;
