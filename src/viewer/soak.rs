@@ -14,6 +14,7 @@ use super::workspace::{Request, Workspace};
 use crate::engine::integrators::{Params, REGISTRY};
 use crate::engine::io::embedded;
 use crate::engine::math::hash::combine;
+use crate::engine::scene::features::SceneFeatures;
 
 /// Time between two deeds.
 const PAUSE: Duration = Duration::from_millis(40);
@@ -127,6 +128,16 @@ impl fmt::Display for Report {
     }
 }
 
+/// Whether it says that an algorithm knows no media: the hand asks for what cannot be had, too.
+fn is_refusal(sentence: &str) -> bool {
+    let foggy = SceneFeatures {
+        media: true,
+        ..SceneFeatures::default()
+    };
+    let mut refusals = REGISTRY.iter().filter_map(|entry| entry.refusal(&foggy));
+    refusals.any(|refusal| refusal == sentence)
+}
+
 fn median(values: &[u64]) -> Option<u64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable();
@@ -196,7 +207,7 @@ impl Soak {
         }
         self.next = now + PAUSE;
         for (_, sentence) in workspace.notices.errors() {
-            if !self.report.errors.contains(sentence) {
+            if !is_refusal(sentence) && !self.report.errors.contains(sentence) {
                 self.report.errors.push(sentence.clone());
             }
         }
