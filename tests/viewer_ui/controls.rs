@@ -1,8 +1,12 @@
 //! Controls of the panel.
 
+use std::sync::Arc;
+
 use egui_kittest::kittest::Queryable;
 use lightscope::engine::film::ToneMap;
 use lightscope::engine::integrators::{ParamKind, REGISTRY, find};
+use lightscope::engine::io::embedded;
+use lightscope::engine::scene::Scene;
 use lightscope::engine::session::Settings;
 use lightscope::viewer::commands::TABLE;
 use lightscope::viewer::display::Shown;
@@ -32,22 +36,27 @@ fn components_are_switched_and_shown_alone() {
 }
 
 #[test]
-fn every_parameter_of_every_integrator_has_a_control() {
+fn every_parameter_of_every_integrator_has_a_control_where_it_matters() {
+    let desc = embedded::read("glass-volume-caustic").expect("a scene");
+    let rich = Arc::new(Scene::build(&desc).expect("a scene"));
     for entry in REGISTRY {
-        let mut desk = desk();
-        desk.state_mut().model.settings.integrator = entry;
-        desk.run();
-        for spec in entry.params {
-            let name = spec.name.replace('-', " ");
-            let mut found = desk.query_all_by(|node| {
-                node.label()
-                    .is_some_and(|label| label.eq_ignore_ascii_case(&name))
-            });
-            assert!(
-                found.next().is_some(),
-                "{}: no control for {name}",
-                entry.id
-            );
+        for scene in [None, Some(&rich)] {
+            let mut desk = desk();
+            let workspace = desk.state_mut();
+            workspace.model.settings.integrator = entry;
+            workspace.scene = scene.cloned().or(workspace.scene.take());
+            let features = workspace.scene.as_ref().expect("a scene").features;
+            desk.run();
+            for spec in entry.params {
+                let name = spec.name.replace('-', " ");
+                let mut found = desk.query_all_by(|node| {
+                    node.label()
+                        .is_some_and(|label| label.eq_ignore_ascii_case(&name))
+                });
+                let matters = (spec.matters)(&features);
+                assert_eq!(found.next().is_some(), matters, "{}: {name}", entry.id);
+                assert!(matters || scene.is_none(), "{name} matters nowhere");
+            }
         }
     }
 }

@@ -84,8 +84,10 @@ fn what_a_medium_scatters_is_shown_alone() {
 #[test]
 fn without_a_medium_there_is_nothing_to_be_shown_alone() {
     let mut desk = desk();
-    assert!(desk.query_by_label("only volume").is_none());
-    assert!(desk.query_by_label("Play").is_none());
+    for label in ["only volume", "Play", "Equiangular"] {
+        assert!(desk.query_by_label(label).is_none(), "{label}");
+    }
+    assert!(foggy().query_by_label("Equiangular").is_some());
     desk.key_press(Key::Num6);
     desk.run_steps(2);
     assert_eq!(desk.state().model.display.shown, Shown::Whole);

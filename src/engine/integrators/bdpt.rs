@@ -45,6 +45,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Strategies,
         default: "all",
         unit: "",
+        matters: |_| true,
         doc: "Which strategies (s, t) are on, s vertices sampled from the light and t from the \
               lens: all, all-0,2-*,1 (all but these), or 1,2+0,2 (these alone).",
     },
@@ -53,6 +54,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Strategies,
         default: "all",
         unit: "",
+        matters: |_| true,
         doc: "Which strategies (s, t) the picture shows; the others keep their share of each path. \
               1,2 shows what the weights leave of that strategy; with strategies=1,2 it stands \
               alone and unweighted.",
@@ -62,6 +64,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["power", "balance"]),
         default: "power",
         unit: "",
+        matters: |_| true,
         doc: "How strategies share a path: in proportion to the squares of their densities, or to \
               the densities.",
     },
@@ -71,6 +74,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(0, 10_000_000),
         default: "2",
         unit: "events",
+        matters: |_| true,
         doc: "Number of events after which Russian roulette may end either walk.",
     },
 ];

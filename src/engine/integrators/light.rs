@@ -42,6 +42,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(0, 10_000_000),
         default: "2",
         unit: "events",
+        matters: |_| true,
         doc: "Number of events after which Russian roulette may end a light path.",
     },
 ];

@@ -152,6 +152,7 @@ const SAMPLER_PARAM: ParamSpec = ParamSpec {
     kind: ParamKind::Choice(&["sobol", "independent"]),
     default: "sobol",
     unit: "",
+    matters: |_| true,
     doc: "Owen-scrambled Sobol points, or independent random numbers.",
 };
 

@@ -34,6 +34,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, 1024),
         default: "8",
         unit: "rays",
+        matters: |_| true,
         doc: "Rays sent on from every hit.",
     },
     ParamSpec {
@@ -41,6 +42,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(0, 16),
         default: "3",
         unit: "events",
+        matters: |_| true,
         doc: "Most events of a path; longer ones are lost.",
     },
     ParamSpec {
@@ -48,6 +50,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, 1_000_000_000),
         default: "100000",
         unit: "rays",
+        matters: |_| true,
         doc: "Most rays of one sample of a pixel, shadow rays left aside; a tree that is cut there \
               is counted, and too dark.",
     },

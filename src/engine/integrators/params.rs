@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use crate::engine::scene::features::SceneFeatures;
+
 use super::bidirectional::{Heuristic, Strategies};
 
 /// What a parameter may be.
@@ -31,6 +33,8 @@ pub struct ParamSpec {
     pub default: &'static str,
     /// Unit, empty for pure numbers.
     pub unit: &'static str,
+    /// Whether it makes a difference in a scene of these features: elsewhere the window hides it.
+    pub matters: fn(&SceneFeatures) -> bool,
     /// One sentence.
     pub doc: &'static str,
 }
@@ -227,6 +231,7 @@ mod tests {
             kind: ParamKind::Integer(1, 9),
             default: "3",
             unit: "",
+            matters: |_| true,
             doc: "",
         };
         let mut p = Params::defaults(&[spec]);

@@ -40,6 +40,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["balance", "power"]),
         default: "balance",
         unit: "",
+        matters: |_| true,
         doc: "How strategies share a path: in proportion to their densities, or to the squares.",
     },
     ParamSpec {
@@ -47,6 +48,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Strategies,
         default: "all",
         unit: "",
+        matters: |_| true,
         doc: "Which strategies of connection (s, t) are on, s vertices sampled from the light and \
               t from the lens: all, all-0,2-*,1 (all but these), or 1,2+0,2 (these alone).",
     },
@@ -56,6 +58,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(0, 10_000_000),
         default: "2",
         unit: "events",
+        matters: |_| true,
         doc: "Number of events after which Russian roulette may end either walk.",
     },
 ];
@@ -66,6 +69,7 @@ pub(super) const RADIUS_PARAM: ParamSpec = ParamSpec {
     kind: ParamKind::Number(0.000_001, 1.0),
     default: "0.005",
     unit: "of the scene's radius",
+    matters: |_| true,
     doc: "Radius of merging in the first pass.",
 };
 
@@ -75,6 +79,7 @@ pub(super) const ALPHA_PARAM: ParamSpec = ParamSpec {
     kind: ParamKind::Number(0.01, 1.0),
     default: "0.75",
     unit: "",
+    matters: |_| true,
     doc: "How slowly the radius shrinks: after n passes its square is n^(alpha-1) of the first.",
 };
 

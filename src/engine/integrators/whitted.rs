@@ -39,6 +39,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["soft", "hard"]),
         default: "soft",
         unit: "",
+        matters: |_| true,
         doc: "Lamps are sampled all over, or stand for a point in their middle.",
     },
     ParamSpec {
@@ -46,6 +47,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(0, 8),
         default: "4",
         unit: "events",
+        matters: |_| true,
         doc: "Number of mirror or glass events up to which all lobes are followed; beyond, one is \
               drawn.",
     },

@@ -23,7 +23,9 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
             }
         });
     combo.response.on_hover_text(before.summary);
-    params::show(ui, settings.integrator.params, &mut settings.params);
+    let features = workspace.scene.as_ref().map(|scene| &scene.features);
+    let specs = settings.integrator.params;
+    params::show(ui, specs, &mut settings.params, features);
     depth(ui, &mut settings.layers.max_depth);
     widgets::number(
         ui,

@@ -4,13 +4,23 @@ use egui::{ComboBox, Slider, TextEdit, Ui};
 
 use super::{strategies, widgets};
 use crate::engine::integrators::{ParamKind, ParamSpec, Params};
+use crate::engine::scene::features::SceneFeatures;
 
 /// Widest range of integers that a slider shows; wider ones are dragged or typed.
 const SLIDER_RANGE: i64 = 200;
 
-/// Draws the controls of `specs` and stores what the user chooses.
-pub fn show(ui: &mut Ui, specs: &'static [ParamSpec], params: &mut Params) {
+/// Draws the controls of those of `specs` that matter in a scene of these features, and stores what
+/// the user chooses.
+pub fn show(
+    ui: &mut Ui,
+    specs: &'static [ParamSpec],
+    params: &mut Params,
+    features: Option<&SceneFeatures>,
+) {
     for spec in specs {
+        if features.is_some_and(|features| !(spec.matters)(features)) {
+            continue;
+        }
         let text = match spec.kind {
             ParamKind::Choice(words) => choice(ui, spec, words, params),
             ParamKind::Switch => switch(ui, spec, params),

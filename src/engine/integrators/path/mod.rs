@@ -44,6 +44,7 @@ const PARAMS: &[ParamSpec] = &[
         // Measured: one or two cost caustics of mirrors in a row a third, more than four the others.
         default: "4",
         unit: "events",
+        matters: |_| true,
         doc: "Number of events after which Russian roulette may end a path.",
     },
     ParamSpec {
@@ -51,6 +52,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["on", "off"]),
         default: "on",
         unit: "",
+        matters: |scene| scene.volume,
         doc: "In homogeneous media, one more place on each flight where light is looked for, near \
               the light (Kulla and Fajardo 2012).",
     },
@@ -62,6 +64,7 @@ pub(super) const MODE_PARAM: ParamSpec = ParamSpec {
     kind: ParamKind::Choice(&["mis", "kajiya", "hits"]),
     default: "mis",
     unit: "",
+    matters: |_| true,
     doc: "How lights are found: by shadow rays and hits weighed together, by a shadow ray to \
           every light, or by hits alone.",
 };

@@ -128,6 +128,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["direct", "gather", "cache"]),
         default: "direct",
         unit: "",
+        matters: |_| true,
         doc: "How indirect light is found: from the global map where the eye looks, from both \
               maps where gather rays end, or by gathers at few points with interpolation between.",
     },
@@ -136,6 +137,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Switch,
         default: "on",
         unit: "",
+        matters: |scene| scene.diffuse && (scene.specular || scene.glossy),
         doc: "Off blackens the caustic component; gather rays still read the map.",
     },
     ParamSpec {
@@ -143,6 +145,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Switch,
         default: "on",
         unit: "",
+        matters: |scene| scene.diffuse,
         doc: "Off blackens the indirect component.",
     },
     ParamSpec {
@@ -150,6 +153,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Switch,
         default: "on",
         unit: "",
+        matters: |scene| scene.volume,
         doc: "Off blackens what photons in media bring; the map is then left unbuilt.",
     },
     ParamSpec {
@@ -157,6 +161,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["beam", "point"]),
         default: "beam",
         unit: "",
+        matters: |scene| scene.volume,
         doc: "How the volume map is read: along whole rays in homogeneous media, or at the places \
               where rays are scattered.",
     },
@@ -165,6 +170,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, MAX_PHOTONS),
         default: "200000",
         unit: "photons",
+        matters: |scene| scene.volume,
         doc: "Photons stored in the volume map, about.",
     },
     ParamSpec {
@@ -172,6 +178,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Number(1e-6, 10.0),
         default: "0.01",
         unit: "of the scene's radius",
+        matters: |scene| scene.volume,
         doc: "Radius of an estimate along a ray, and the largest at a point.",
     },
     ParamSpec {
@@ -179,6 +186,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, MAX_PHOTONS),
         default: "200000",
         unit: "photons",
+        matters: |scene| scene.diffuse && (scene.specular || scene.glossy),
         doc: "Photons stored in the caustic map, about.",
     },
     ParamSpec {
@@ -186,6 +194,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, MAX_PHOTONS),
         default: "200000",
         unit: "photons",
+        matters: |scene| scene.diffuse,
         doc: "Photons stored in the global map, about.",
     },
     ParamSpec {
@@ -193,6 +202,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(2, 10_000),
         default: "50",
         unit: "photons",
+        matters: |_| true,
         doc: "Photons of an estimate: more of them blur more and are less noisy.",
     },
     ParamSpec {
@@ -200,6 +210,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Number(1e-6, 10.0),
         default: "0.02",
         unit: "of the scene's radius",
+        matters: |scene| scene.diffuse && (scene.specular || scene.glossy),
         doc: "Largest radius of an estimate from the caustic map. Thin bright lines come out too \
               bright where `nearest` ends the search first: raise it and lower the radius.",
     },
@@ -208,6 +219,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Number(1e-6, 10.0),
         default: "0.15",
         unit: "of the scene's radius",
+        matters: |scene| scene.diffuse,
         doc: "Largest radius of an estimate from the global map.",
     },
     ParamSpec {
@@ -215,6 +227,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["box", "cone", "gaussian", "epanechnikov"]),
         default: "box",
         unit: "",
+        matters: |_| true,
         doc: "How photons are weighed by their distance.",
     },
     ParamSpec {
@@ -222,6 +235,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, 100_000),
         default: "100",
         unit: "rays",
+        matters: |_| true,
         doc: "Rays of a final gather.",
     },
     ParamSpec {
@@ -229,6 +243,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Number(0.01, 1.0),
         default: "0.2",
         unit: "",
+        matters: |_| true,
         doc: "Error bound of interpolated gathers: smaller is more exact, with more records.",
     },
     ParamSpec {
@@ -236,6 +251,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Switch,
         default: "off",
         unit: "",
+        matters: |_| true,
         doc: "On builds new maps each pass: their noise averages away, their bias stays.",
     },
     ParamSpec {
@@ -243,6 +259,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["keep", "lose"]),
         default: "keep",
         unit: "",
+        matters: |_| true,
         doc: "Scattered photons keep their power and some of them die, or all live on and lose \
               power.",
     },
@@ -251,6 +268,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["independent", "sobol"]),
         default: "independent",
         unit: "",
+        matters: |_| true,
         doc: "Random numbers of the photons: independent, or Sobol points, which are less noisy \
               and up to half a photon in an estimate too dark.",
     },
@@ -259,6 +277,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["packed", "full"]),
         default: "packed",
         unit: "",
+        matters: |_| true,
         doc: "Twenty bytes a photon, or full precision.",
     },
     ParamSpec {
@@ -266,6 +285,7 @@ pub(super) const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["widest", "cyclic"]),
         default: "widest",
         unit: "",
+        matters: |_| true,
         doc: "The tree splits along the longest side, or along x, y and z in turn.",
     },
 ];

@@ -45,6 +45,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice(&["bdpt", "path"]),
         default: "bdpt",
         unit: "",
+        matters: |_| true,
         doc: "What turns random numbers into paths: bidirectional path tracing or path tracing.",
     },
     ParamSpec {
@@ -52,6 +53,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Number(0.01, 1.0),
         default: "0.3",
         unit: "",
+        matters: |_| true,
         doc: "Probability of a large step, an independent sample that may lead anywhere.",
     },
     ParamSpec {
@@ -59,6 +61,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Number(0.0001, 0.5),
         default: "0.01",
         unit: "",
+        matters: |_| true,
         doc: "Standard deviation of a small step in each random number.",
     },
     ParamSpec {
@@ -66,6 +69,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, 65_536),
         default: "256",
         unit: "",
+        matters: |_| true,
         doc: "Markov chains in each half of the passes.",
     },
     ParamSpec {
@@ -73,6 +77,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(1, 100_000_000),
         default: "32768",
         unit: "samples",
+        matters: |_| true,
         doc: "Independent samples among which the chains of each half find their starts.",
     },
     ParamSpec {
@@ -80,6 +85,7 @@ const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Integer(0, 10_000_000),
         default: "2",
         unit: "events",
+        matters: |_| true,
         doc: "Number of events after which Russian roulette may end a walk.",
     },
 ];
