@@ -1,6 +1,6 @@
 //! Rays that leave a surface: none meets it again, none passes a gap wider than stated.
 
-use glam::{Vec3, Vec3A};
+use glam::{Quat, Vec3, Vec3A};
 use lightscope::engine::geometry::{Geometry, MeshInput, Ray, SphereInput, SurfaceInteraction};
 use lightscope::engine::math::Frame;
 use lightscope::engine::sampling::sampler::Sampler;
@@ -114,5 +114,46 @@ fn two_surfaces_see_each_other() {
         }
         assert!(pairs > 10_000);
         assert_eq!(blocked, 0, "of {pairs} at scale {scale}, centre {center}");
+    }
+}
+
+/// Where edges meet, rounding must not put a point on the neighbour's plane or behind it.
+#[test]
+fn no_ray_slips_out_where_walls_meet() {
+    let mut s = sampler(10);
+    for (scale, offset) in [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 10.0), (1.0, 1e3)] {
+        for turned in [false, true] {
+            let turn = match turned {
+                true => Quat::from_axis_angle(Vec3::from(direction(&mut s)), 1.0),
+                false => Quat::IDENTITY,
+            };
+            let place = |p: Vec3| turn * (scale * p) + scale * Vec3::splat(offset);
+            let (corners, triangles) = cube(1.0, Vec3::ZERO);
+            let positions: Vec<Vec3> = corners.into_iter().map(place).collect();
+            let (room, _) = build(&positions, &triangles);
+            let ulp = f32::EPSILON * (1.0 + offset);
+            let mut slipped = 0;
+            for trial in 0..40_000 {
+                // On the floor, a few units in the last place from a wall, or from two.
+                let (x, gap) = (point(&mut s).x, ulp * 4.0 * s.next_1d());
+                let y = if trial % 2 == 0 { x } else { 1.0 - gap };
+                let aim = Vec3A::from(place(Vec3::new(1.0 - gap, -1.0, y)));
+                let from = Vec3A::from(place(Vec3::new(0.0, 0.3 * x, 0.0)));
+                let ray = Ray::new(from, (aim - from).normalize());
+                let Some(hit) = room.intersect(&ray) else {
+                    slipped += 1;
+                    continue;
+                };
+                let at = room.interaction(&ray, &hit);
+                let inward = at.n_g * at.n_g.dot(at.wo).signum();
+                let local = sample_cosine_hemisphere(s.next_2d());
+                let d = Frame::from_normal(inward).to_world(local);
+                slipped += u32::from(room.intersect(&at.spawn_ray(d)).is_none());
+            }
+            assert_eq!(
+                slipped, 0,
+                "scale {scale}, offset {offset}, turned {turned}"
+            );
+        }
     }
 }

@@ -115,6 +115,9 @@ fn check_all(what: &str, scene: &Arc<Scene>, mode_hits: bool) {
                 .concat(),
             ],
             "monte-carlo" => vec![vec![("depth", "2")]],
+            "bdpt" => ["all", "1,2+2,2", "all-1,*-0,*", "*,1+1,3", "0,*"]
+                .map(|on| vec![("strategies", on)])
+                .to_vec(),
             "sppm" | "vcm" => vec![vec![("radius", "0.05")]],
             _ => vec![vec![]],
         };

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec2, Vec3, Vec3A};
 
+use super::offset::inset;
 use crate::engine::math::float::MACHINE_EPSILON;
 
 /// A mesh as a scene gives it, in world space.
@@ -194,13 +195,16 @@ impl TriangleMesh {
         let triangle = self.triangles[prim as usize];
         let part = &self.parts[self.part_of[prim as usize] as usize];
         let corners = triangle.map(|i| self.positions[i as usize].as_dvec3());
-        let (b1, b2) = (f64::from(u), f64::from(v));
         let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
-        let p = (corners[0] + b1 * e1 + b2 * e2).as_vec3a();
+        let cross = e1.cross(e2);
         let largest = corners[0].abs().max(corners[1].abs()).max(corners[2].abs());
-        let p_error =
-            p.abs() * MACHINE_EPSILON + largest.as_vec3a() * (16.0 * MACHINE_EPSILON.powi(2));
-        let n_g = e1.cross(e2).normalize().as_vec3a();
+        let largest = largest.as_vec3a();
+        let (b1, b2) = (f64::from(u), f64::from(v));
+        let within = largest * MACHINE_EPSILON;
+        let [_, b1, b2] = inset([1.0 - b1 - b2, b1, b2], e1, e2, cross, within);
+        let p = (corners[0] + b1 * e1 + b2 * e2).as_vec3a();
+        let p_error = p.abs() * MACHINE_EPSILON + largest * (16.0 * MACHINE_EPSILON.powi(2));
+        let n_g = cross.normalize().as_vec3a();
         let local = triangle.map(|i| (i - part.first_vertex) as usize);
         let b = [1.0 - u - v, u, v];
         TrianglePoint {

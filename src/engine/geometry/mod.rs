@@ -20,7 +20,7 @@ pub use bounds::Bounds3;
 pub use closed::{Departure, RayFault};
 pub use interaction::SurfaceInteraction;
 pub use mesh::{DropReport, MAX_COORDINATE, MeshInput};
-pub use offset::offset_origin;
+pub use offset::{inset, offset_origin};
 pub use ray::{Hit, Ray};
 pub use sphere::{Sphere, SphereInput};
 pub use surfaces::Geometry;

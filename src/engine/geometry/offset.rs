@@ -1,6 +1,6 @@
 //! Origins of secondary rays, outside the error box of the surface they leave.
 
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 
 /// `p` moved along ±`n_g`, to the side that `d` points to, until the plane through it clears the
 /// box of half width `p_error`; rounded outward (*Physically Based Rendering*, 4th ed., 6.8.6).
@@ -21,6 +21,26 @@ pub fn offset_origin(p: Vec3A, p_error: Vec3A, n_g: Vec3A, d: Vec3A) -> Vec3A {
         round_towards(moved.y, offset.y),
         round_towards(moved.z, offset.z),
     )
+}
+
+/// Barycentric weights `b` moved towards the middle of the triangle until the point is at least
+/// twice `p_error` from its edges; half way at most, where the triangle is no wider than that.
+///
+/// A point that rounding puts on an edge lies on the neighbour's plane, too, or behind it: a ray
+/// that leaves it towards a wall it stands at would meet that wall at `t` ≤ 0 and slip out of the
+/// room. `e1` and `e2` are the edges from the first corner.
+#[inline]
+pub fn inset(b: [f64; 3], e1: DVec3, e2: DVec3, cross: DVec3, p_error: Vec3A) -> [f64; 3] {
+    let longest = e1.length_squared().max(e2.length_squared());
+    let longest = longest.max((e2 - e1).length_squared());
+    // The height over an edge is twice the area, |cross|, by its length.
+    let error = p_error.as_dvec3().length_squared();
+    let least = (4.0 * error * longest / cross.length_squared()).sqrt();
+    if b[0].min(b[1]).min(b[2]) >= least {
+        return b;
+    }
+    let least = least.min(1.0 / 6.0);
+    b.map(|b| least + (1.0 - 3.0 * least) * b.max(0.0))
 }
 
 /// The neighbour of `x` in the direction of the sign of `by`.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::bidirectional::{
     Connector, FIRST_LIGHT_VERTEX, Heuristic, LightStart, PhotonGrid, Sink, Strategies, Subpath,
-    Technique, Walker, vertex_dimensions,
+    Technique, Walker, lost_words, vertex_dimensions,
 };
 use super::tiled::{CAMERA_DIMENSIONS, SamplerKind};
 use super::{
@@ -88,8 +88,22 @@ fn build(params: &Params) -> Box<dyn Integrator> {
     Box::new(Bdpt::new(params))
 }
 
+/// Words that no strategy finds that is on.
+fn missing(features: &SceneFeatures, params: &Params) -> Option<Missing> {
+    let strategies = params.strategies("strategies");
+    if strategies.are_all_on() {
+        return unconnectable(features);
+    }
+    lost_words(&strategies, features).map(|words| Missing {
+        words: words.into(),
+        why: "the strategies that could find such light are switched off, and those that are on \
+              cannot join these paths (longer ones with the same mirrors are lost alike)"
+            .into(),
+    })
+}
+
 /// Words that no strategy can find: between S+ and S+ no two vertices can be connected.
-pub(super) fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
+pub(super) fn unconnectable(features: &SceneFeatures) -> Option<Missing> {
     (features.zero_size_lights && features.specular).then_some(Missing {
         words: "LS+((D|G|V)S+)*E".into(),
         why: "light of a point, spot or directional source that meets mirror or glass before and \

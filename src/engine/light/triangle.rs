@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 
 use super::spherical_triangle::SphericalTriangle;
 use super::{EmissionSample, LightSample};
-use crate::engine::geometry::{Ray, offset_origin};
+use crate::engine::geometry::{Ray, inset, offset_origin};
 use crate::engine::math::float::{ONE_MINUS_EPSILON, gamma};
 use crate::engine::math::{Frame, Rgb};
 use crate::engine::sampling::warp::{
@@ -100,7 +100,12 @@ impl TriangleLight {
     /// See [`super::Light::sample_le`]: uniform by area, directions by the cosine.
     pub fn sample_le(&self, u_pos: Vec2, u_dir: Vec2) -> EmissionSample {
         let b = sample_triangle(u_pos);
-        let (p, p_error) = self.point([b.x, b.y, (1.0 - b.x - b.y).max(0.0)]);
+        let b = [b.x, b.y, (1.0 - b.x - b.y).max(0.0)];
+        let within = self.point(b).1;
+        let [v0, v1, v2] = self.corners.map(|v| v.as_dvec3());
+        let cross = self.cross.as_dvec3();
+        let b = inset(b.map(f64::from), v1 - v0, v2 - v0, cross, within);
+        let (p, p_error) = self.point(b.map(|b| b as f32));
         emit_from_surface(p, p_error, self.n, self.area, self.radiance, u_dir)
     }
 

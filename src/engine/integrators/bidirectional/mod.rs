@@ -15,6 +15,7 @@
 mod connect;
 mod ends;
 mod flight;
+mod lost;
 mod merge;
 mod strategies;
 mod subpath;
@@ -27,6 +28,7 @@ mod tests;
 
 pub use connect::{Connector, Sink, Technique};
 pub use ends::LightEnd;
+pub use lost::lost_words;
 pub use merge::{PhotonGrid, PhotonList};
 pub use strategies::{Heuristic, Strategies};
 pub use subpath::{Escape, FIRST_LIGHT_VERTEX, LightStart, Subpath, Walker, vertex_dimensions};

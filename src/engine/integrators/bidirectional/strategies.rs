@@ -79,6 +79,11 @@ impl Strategies {
         Self { heuristic, ..self }
     }
 
+    /// Whether none is switched off.
+    pub fn are_all_on(&self) -> bool {
+        self.all
+    }
+
     /// Whether (s, t) is on.
     #[inline]
     pub fn is_on(&self, s: usize, t: usize) -> bool {

@@ -2,12 +2,13 @@
 //!
 //! In the spirit of Hachisuka, Jarosz and Jensen 2010, *A Progressive Error Estimation Framework
 //! for Photon Density Estimation*: the bias of a density estimate grows with the area A of its
-//! disc: the mean of x_A is L + b·A + …. Several independent maps are read twice, over A and over A/2, by
-//! the same camera samples. The spread of x_A over the maps is its noise; twice the mean of
-//! x_A − x_(A/2) is its bias, known to twice that difference's own error.
+//! disc: the mean of x_A is L + b·A + …. Several independent maps are read twice, over A and over
+//! A/16, by the same camera samples. The spread of x_A over the maps is its noise; 16/15 of the mean
+//! of x_A − x_(A/16) is its bias, known to 16/15 of that difference's own error.
 //!
-//! At an edge the bias grows with √A only, and the report is 1.7 times too small; in the very
-//! corner it does not depend on A at all and is not seen.
+//! At an edge the bias grows with √A only, and the report is a fifth too small (with A/2 it would be
+//! 1.7 times too small, for half of the noise); nearer to a corner than a quarter of the radius it
+//! does not depend on A at all and is not seen.
 
 use std::sync::Arc;
 
@@ -18,6 +19,11 @@ use crate::engine::film::Film;
 use crate::engine::film::FrameLayer;
 use crate::engine::integrators::tiled::{SamplerKind, Tiled};
 use crate::engine::integrators::{Cancelled, Integrator, Pass, RenderStats};
+
+/// Share of the area that the second estimate is read over.
+const SHRUNK: f32 = 1.0 / 16.0;
+/// Bias over the difference of the two estimates, if it grows with the area.
+const EXTRAPOLATE: f64 = 1.0 / (1.0 - SHRUNK as f64);
 
 /// What was found, per pixel and channel, row by row.
 #[derive(Clone, Debug, Default)]
@@ -77,9 +83,9 @@ pub fn noise_and_bias(
             film.resolve(&cx.plan.labels, &mut layers);
             Ok(layers)
         };
-        let (full, half) = (picture(1.0)?, picture(0.5)?);
-        for ((sums, full), half) in sums.iter_mut().zip(full).zip(half) {
-            for ((sums, x), y) in sums.iter_mut().zip(full.pixels).zip(half.pixels) {
+        let (full, shrunk) = (picture(1.0)?, picture(SHRUNK)?);
+        for ((sums, full), shrunk) in sums.iter_mut().zip(full).zip(shrunk) {
+            for ((sums, x), y) in sums.iter_mut().zip(full.pixels).zip(shrunk.pixels) {
                 (0..3).for_each(|c| sums[c].add(x[c], y[c]));
             }
         }
@@ -112,8 +118,8 @@ impl NoiseBias {
             maps,
             mean: each(&|s| s.x / n),
             noise: each(&|s| variance(s.x, s.x2).sqrt()),
-            bias: each(&|s| 2.0 * s.d / n),
-            bias_error: each(&|s| 2.0 * (variance(s.d, s.d2) / n).sqrt()),
+            bias: each(&|s| EXTRAPOLATE * s.d / n),
+            bias_error: each(&|s| EXTRAPOLATE * (variance(s.d, s.d2) / n).sqrt()),
         }
     }
 

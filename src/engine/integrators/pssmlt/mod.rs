@@ -15,7 +15,7 @@ mod chain;
 use rayon::prelude::*;
 
 use self::chain::{Chain, Source};
-use super::bdpt::{Bidirectional, missing as bdpt_missing};
+use super::bdpt::{Bidirectional, unconnectable};
 use super::bidirectional::{Heuristic, Strategies};
 use super::path::ENTRY as PATH;
 use super::{
@@ -118,7 +118,7 @@ fn build(params: &Params) -> Box<dyn Integrator> {
 fn missing(features: &SceneFeatures, params: &Params) -> Option<Missing> {
     match params.choice("over") {
         "path" => (PATH.missing)(features, &Params::defaults(PATH.params)),
-        _ => bdpt_missing(features, params),
+        _ => unconnectable(features),
     }
 }
 
