@@ -49,7 +49,7 @@ pub fn check_exists(name: &str, others: &[&str]) -> Result<(), CliError> {
 
 /// True if `name` is the id of an embedded scene.
 pub fn is_embedded(name: &str) -> bool {
-    embedded::all().iter().any(|scene| scene.id == name)
+    embedded::contains(name)
 }
 
 /// The scene in a file.

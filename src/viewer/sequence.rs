@@ -39,6 +39,11 @@ impl Sequence {
     pub fn show(&mut self, at: u32, pictures: u64) {
         (self.at, self.came_at, self.since) = (at, pictures, None);
     }
+
+    /// Whether the last of `pictures` pictures is of the frame that came last.
+    pub fn is_shown_by(&self, pictures: u64) -> bool {
+        pictures > self.came_at
+    }
 }
 
 /// Asks for the next frame when it is due at the time `now`, in seconds; the time until then.
@@ -51,7 +56,7 @@ pub fn play(workspace: &mut Workspace, now: f64) -> Option<f64> {
     }
     let since = *sequence.since.get_or_insert(now);
     let frame = workspace.frame.as_ref()?;
-    let is_of_it = workspace.frame_number > sequence.came_at && !frame.is_coarse();
+    let is_of_it = sequence.is_shown_by(workspace.frame_number) && !frame.is_coarse();
     if !is_of_it || frame.passes < sequence.passes {
         return None; // a picture wakes the window
     }

@@ -21,7 +21,7 @@ pub enum SceneSource {
 impl SceneSource {
     /// What a user means by `name`: the id of an embedded scene wins over a file.
     pub fn named(name: &str) -> Self {
-        if embedded::all().iter().any(|scene| scene.id == name) {
+        if embedded::contains(name) {
             Self::Embedded(name.to_owned())
         } else {
             Self::File(PathBuf::from(name))

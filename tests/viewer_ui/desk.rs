@@ -6,7 +6,6 @@ use std::sync::Arc;
 use egui_kittest::Harness;
 use glam::UVec2;
 use lightscope::engine::integrators::{Cancel, REGISTRY};
-use lightscope::engine::io::scene_file;
 use lightscope::engine::scene::Scene;
 use lightscope::engine::session::{RenderJob, Renderer, Settings};
 use lightscope::viewer::opening::Opening;
@@ -21,9 +20,13 @@ pub type Desk = Harness<'static, Workspace>;
 pub fn workspace() -> Workspace {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/cornell-diffuse/scene.json");
-    let desc = scene_file::load(&path).expect("a scene");
+    workspace_of(SceneSource::File(path), 2)
+}
+
+/// The scene of `source` after some passes.
+pub fn workspace_of(source: SceneSource, passes: u64) -> Workspace {
+    let desc = source.read().desc.expect("a scene");
     let scene = Arc::new(Scene::build(&desc).expect("a scene"));
-    let source = SceneSource::File(path);
     let mut workspace = Workspace::new(source.clone());
     let opening = Opening::scene(source);
     workspace.show_scene(opening, Arc::clone(&scene), false, String::new());
@@ -36,7 +39,7 @@ pub fn workspace() -> Workspace {
         navigating: false,
     };
     let mut renderer = Renderer::new(&job).expect("a render");
-    for _ in 0..2 {
+    for _ in 0..passes {
         renderer.render_pass(&Cancel::never()).expect("a pass");
     }
     workspace.show_frame(Arc::new(renderer.frame()));
@@ -50,7 +53,11 @@ pub fn desk() -> Desk {
 
 /// With one section open and all others folded.
 pub fn desk_with_section(section: &str) -> Desk {
-    let mut workspace = workspace();
+    desk_of_section(workspace(), section)
+}
+
+/// That of a workspace.
+pub fn desk_of_section(mut workspace: Workspace, section: &str) -> Desk {
     let sections = &mut workspace.preferences.sections;
     for title in ["Algorithm", "Components", "Display", "Save"] {
         sections.insert(title.to_owned(), false);

@@ -9,3 +9,4 @@ mod hand;
 mod measuring;
 mod media;
 mod photons;
+mod stress;

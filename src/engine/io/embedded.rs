@@ -7,6 +7,7 @@ use super::error::InputError;
 use super::source::FileSource;
 use super::{generated, scene_file, smoke};
 use crate::engine::scene::desc::SceneDesc;
+use crate::engine::stability::stress::{self, Stress};
 
 /// A scene within the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,6 +72,12 @@ pub fn all() -> &'static [EmbeddedScene] {
     SCENES
 }
 
+/// Whether `id` names a scene within the program: one of [`all`], or an experiment of
+/// [`stress`] with its numbers.
+pub fn contains(id: &str) -> bool {
+    id.starts_with(stress::PREFIX) || SCENES.iter().any(|scene| scene.id == id)
+}
+
 /// The embedded scene called `id`.
 ///
 /// # Errors
@@ -84,5 +91,9 @@ pub fn read(id: &str) -> Result<SceneDesc, InputError> {
 /// # Errors
 /// If there is none.
 pub fn read_frame(id: &str, frame: u32) -> Result<SceneDesc, InputError> {
+    if id.starts_with(stress::PREFIX) {
+        let stress = Stress::parse(id).map_err(|message| InputError::in_file(id, message))?;
+        return Ok(stress.scene());
+    }
     scene_file::load_frame_from(&Embedded, &format!("{id}.toml"), frame)
 }

@@ -16,6 +16,7 @@ mod extremes;
 mod fits;
 pub mod oracles;
 pub mod scenes;
+pub mod stress;
 
 pub use case::{Case, Depth, Fit, Outcome, Point, Variant, run};
 

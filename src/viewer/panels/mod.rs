@@ -26,6 +26,7 @@ mod scene;
 mod statistics;
 mod status;
 mod strategies;
+mod stress;
 mod style;
 mod widgets;
 
@@ -41,7 +42,7 @@ pub use style::apply as apply_style;
 type Section = (&'static str, bool, fn(&mut Ui, &mut Workspace));
 
 /// The panel's sections from top to bottom.
-const SECTIONS: [Section; 10] = [
+const SECTIONS: [Section; 11] = [
     ("Algorithm", true, algorithm::show),
     ("Components", true, components::show),
     ("Expressions", false, expressions::show),
@@ -52,6 +53,7 @@ const SECTIONS: [Section; 10] = [
     ("Statistics", false, statistics::show),
     ("Error", false, error::show),
     ("Referee", false, referee::show),
+    ("Stress", false, stress::show),
 ];
 
 /// Draws everything and lets the user's input change `workspace`.

@@ -143,7 +143,8 @@ fn time_to(frame: &Frame, target: f64) -> String {
     }
 }
 
-fn faults(ui: &mut Ui, frame: &Frame) {
+/// Counts of what is wrong.
+pub fn faults(ui: &mut Ui, frame: &Frame) {
     let stats = &frame.stats;
     for (name, count, doc) in [
         (
