@@ -1,6 +1,5 @@
 //! `lightscope replay`: one sample again, step by step.
 
-mod command;
 mod steps;
 
 use glam::UVec2;
@@ -11,7 +10,6 @@ use super::error::CliError;
 use super::print;
 use super::render::expressions;
 use super::scene;
-pub use command::replay_command;
 use steps::Naming;
 
 use crate::engine::integrators::{Cancel, Recording, ReplayError, SampleId};

@@ -9,6 +9,7 @@ mod handle;
 mod job;
 mod priority;
 mod renderer;
+mod replay_command;
 pub mod schedule;
 mod worker;
 
@@ -16,5 +17,6 @@ pub use clock::RenderClock;
 pub use handle::RenderSession;
 pub use job::{RenderJob, Settings};
 pub use renderer::Renderer;
+pub use replay_command::replay_command;
 
 pub use crate::engine::film::Frame;

@@ -4,6 +4,7 @@ use egui::{DragValue, Grid, RichText, Ui};
 
 use super::widgets::figure;
 use crate::engine::film::Frame;
+use crate::engine::session::replay_command;
 use crate::viewer::workspace::Workspace;
 
 /// Draws the figures.
@@ -15,7 +16,7 @@ pub fn show(ui: &mut Ui, workspace: &mut Workspace) {
     Grid::new("figures").num_columns(2).show(ui, |ui| {
         progress(ui, &frame);
         target(ui, &frame, &mut workspace.preferences.target_error);
-        faults(ui, &frame);
+        faults(ui, &frame, workspace);
         walks(ui, &frame);
         for fact in &frame.facts {
             figure(ui, fact.label, &fact.value, "What the algorithm prepared.");
@@ -144,7 +145,7 @@ fn time_to(frame: &Frame, target: f64) -> String {
 }
 
 /// Counts of what is wrong.
-pub fn faults(ui: &mut Ui, frame: &Frame) {
+pub fn faults(ui: &mut Ui, frame: &Frame, workspace: &Workspace) {
     let stats = &frame.stats;
     for (name, count, doc) in [
         (
@@ -186,15 +187,26 @@ pub fn faults(ui: &mut Ui, frame: &Frame) {
     ] {
         figure(ui, name, count.to_string(), doc);
     }
-    if let Some(first) = stats.bad_samples().next() {
-        let (stream, id) = (first.id.stream_name(), first.id);
-        let text = format!("{stream} {id}");
-        let doc = format!(
-            "{}; `lightscope replay` with --stream {stream} --index {id} and the settings of this \
-             render follows it again, if the view is the scene's own.",
-            first.what
-        );
-        figure(ui, "First error", text, &doc);
+    let model = &workspace.model;
+    for sample in stats.bad_samples().take(1) {
+        if model.view != model.home {
+            let doc = "The command that replays a sample takes the scene's own view.";
+            figure(ui, "First error", sample.what, doc);
+            continue;
+        }
+        let (scene, at) = (model.source.to_string(), workspace.sequence.at);
+        let size = frame.full_size;
+        let command = replay_command(&scene, at, size, &model.settings, &sample.id);
+        let doc = format!("{}. Click to copy: {command}", sample.what);
+        ui.label("First error");
+        if ui
+            .button("Copy replay command")
+            .on_hover_text(doc)
+            .clicked()
+        {
+            ui.ctx().copy_text(command);
+        }
+        ui.end_row();
     }
 }
 

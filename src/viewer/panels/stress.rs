@@ -82,7 +82,6 @@ fn verdict(ui: &mut Ui, workspace: &Workspace, stress: &Stress) {
             let value = format!("{:+.3} %", 100.0 * (found.mean / exact - 1.0));
             figure(ui, "Deviation", value, doc);
         }
-        faults(ui, frame);
     });
     let (text, colour) = match judged(workspace, exact) {
         Err(why) => (why, ui.visuals().weak_text_color()),
@@ -93,6 +92,9 @@ fn verdict(ui: &mut Ui, workspace: &Workspace, stress: &Stress) {
     let doc = "Right to a thousandth and three standard errors, and no error counted.";
     ui.label(RichText::new(text).color(colour).strong())
         .on_hover_text(doc);
+    Grid::new("counters")
+        .num_columns(2)
+        .show(ui, |ui| faults(ui, frame, workspace));
 }
 
 /// Whether the picture holds, `None` while that is open; or why it is no picture of that closed form.

@@ -128,7 +128,7 @@ fn point(run: &mut Run) {
         // A map is built for each pass of photon mapping.
         let how = match run.id() {
             "photon" => Sampling::new(1, run.pick(1, 64), run.pick(0.08, 0.03)),
-            _ => Sampling::new(4, 2048, run.pick(0.02, 0.005)),
+            _ => Sampling::new(4, run.pick(2048, 1 << 14), run.pick(0.02, 0.005)),
         };
         // What is emitted here is direct light: k events bring ρ^(k−1) of it.
         let total = match run.id() {

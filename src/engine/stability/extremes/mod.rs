@@ -34,6 +34,7 @@ pub const CASES: &[&Case] = &[
     &volume::MEDIUM,
     &photons::TREE,
     &photons::ESTIMATE,
+    &photons::CACHE,
     &film::ACCUMULATE,
     &film::ROULETTE,
     &jobs::SIZES,

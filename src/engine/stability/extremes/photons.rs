@@ -4,10 +4,12 @@ use std::convert::Infallible;
 
 use glam::{Vec3, Vec3A};
 
-use super::super::case::{Case, Run};
+use super::super::case::{Case, Run, decades};
+use super::super::estimate::frame;
 use super::super::fits;
-use super::super::scenes::{build, diffuse, point_light, quad};
+use super::super::scenes::{block, build, diffuse, job_of, point_light, quad, view};
 use crate::engine::geometry::{Ray, SurfaceInteraction};
+use crate::engine::integrators::photon;
 use crate::engine::math::Rgb;
 use crate::engine::path::{ClassId, PathClasses};
 use crate::engine::photon::emission::Emission;
@@ -43,6 +45,56 @@ pub const ESTIMATE: Case = Case {
     fit: fits::engine,
     run: estimate,
 };
+
+/// Records of irradiance.
+pub const CACHE: Case = Case {
+    id: "irradiance-cache",
+    label: "Interpolated gathers in a corner",
+    summary: "The corner of a closed diffuse box, seen nearer and nearer, where the mean distance of \
+              what gathers see, and with it the radius of records, goes to 0.",
+    parameter: "size / distance from the corner",
+    oracle: "a few records cover the view, not one a pixel",
+    stiff: false,
+    fit: fits::engine,
+    run: cache,
+};
+
+/// Records that a corner may take: the smallest radius covers the whole view many times over.
+const CORNER_RECORDS: u64 = 64;
+
+fn cache(run: &mut Run) {
+    let mut walls = block(0, Vec3::NEG_ONE, Vec3::ONE);
+    // Fronts inward.
+    walls.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    for near in decades(2..=run.pick(6, 7), 1) {
+        let gap = (1.0 / near) as f32;
+        let corner = Vec3::new(1.0, 1.0 - gap, 1.0 - 2.0 * gap);
+        let desc = SceneDesc {
+            camera: view(Vec3::ZERO, corner, (100.0 * gap).min(10.0), 32),
+            materials: vec![diffuse("wall", 0.5)],
+            meshes: vec![walls.clone()],
+            lights: vec![point_light(Vec3::Y * 0.5, 1.0)],
+            ..SceneDesc::default()
+        };
+        let set = [
+            ("indirect", "cache"),
+            ("gather-rays", "16"),
+            ("global-photons", "2000"),
+        ];
+        let frame = frame(&job_of(&photon::ENTRY, &set, &desc), 0, 1);
+        let photons = frame.and_then(|frame| frame.photons);
+        let records = photons.and_then(|p| Some(p.cache()?.records().len() as u64));
+        let beyond = records.map_or(1, |n| n.saturating_sub(CORNER_RECORDS));
+        let note = format!("{} records of 1024 pixels", records.unwrap_or(0));
+        run.count(
+            near,
+            "",
+            beyond + u64::from(records == Some(0)),
+            1024,
+            &note,
+        );
+    }
+}
 
 fn cloud(count: usize, item: u64) -> Vec<Vec3A> {
     let mut s = IndependentSampler::new(5, Stream::Test, (item, 0));

@@ -2,8 +2,8 @@
 
 use glam::UVec2;
 
+use super::Settings;
 use crate::engine::integrators::{Params, SampleId};
-use crate::engine::session::Settings;
 
 /// The command line that replays `sample` of a render of the scene called `scene`.
 pub fn replay_command(
