@@ -201,8 +201,8 @@ impl TriangleMesh {
         let largest = largest.as_vec3a();
         let (b1, b2) = (f64::from(u), f64::from(v));
         let within = largest * MACHINE_EPSILON;
-        let [_, b1, b2] = inset([1.0 - b1 - b2, b1, b2], e1, e2, cross, within);
-        let p = (corners[0] + b1 * e1 + b2 * e2).as_vec3a();
+        let p = corners[0] + b1 * e1 + b2 * e2;
+        let p = inset(p, [1.0 - b1 - b2, b1, b2], [e1, e2, cross], within).as_vec3a();
         let p_error = p.abs() * MACHINE_EPSILON + largest * (16.0 * MACHINE_EPSILON.powi(2));
         let n_g = cross.normalize().as_vec3a();
         let local = triangle.map(|i| (i - part.first_vertex) as usize);

@@ -23,24 +23,32 @@ pub fn offset_origin(p: Vec3A, p_error: Vec3A, n_g: Vec3A, d: Vec3A) -> Vec3A {
     )
 }
 
-/// Barycentric weights `b` moved towards the middle of the triangle until the point is at least
-/// twice `p_error` from its edges; half way at most, where the triangle is no wider than that.
+/// The point `p` of barycentric weights `b`, moved within its triangle until it is at least twice
+/// `p_error` from each edge, or a quarter of the height over it where that is less.
 ///
 /// A point that rounding puts on an edge lies on the neighbour's plane, too, or behind it: a ray
 /// that leaves it towards a wall it stands at would meet that wall at `t` ≤ 0 and slip out of the
-/// room. `e1` and `e2` are the edges from the first corner.
+/// room. `e1` and `e2` are the edges from the first corner, `cross` is e1 × e2.
 #[inline]
-pub fn inset(b: [f64; 3], e1: DVec3, e2: DVec3, cross: DVec3, p_error: Vec3A) -> [f64; 3] {
+pub fn inset(p: DVec3, b: [f64; 3], [e1, e2, cross]: [DVec3; 3], p_error: Vec3A) -> DVec3 {
     let longest = e1.length_squared().max(e2.length_squared());
     let longest = longest.max((e2 - e1).length_squared());
+    let least = 2.0 * p_error.as_dvec3().length();
+    let nearest = b[0].min(b[1]).min(b[2]).max(0.0);
     // The height over an edge is twice the area, |cross|, by its length.
-    let error = p_error.as_dvec3().length_squared();
-    let least = (4.0 * error * longest / cross.length_squared()).sqrt();
-    if b[0].min(b[1]).min(b[2]) >= least {
-        return b;
+    if nearest.powi(2) * cross.length_squared() >= least.powi(2) * longest {
+        return p;
     }
-    let least = least.min(1.0 / 6.0);
-    b.map(|b| least + (1.0 - 3.0 * least) * b.max(0.0))
+    let mut moved = p;
+    for (weight, edge) in b.into_iter().zip([e2 - e1, -e2, e1]) {
+        let inward = cross.cross(edge);
+        let height = cross.length() / edge.length();
+        let missing = least.min(0.25 * height) - weight * height;
+        if missing > 0.0 {
+            moved += missing * inward.normalize();
+        }
+    }
+    moved
 }
 
 /// The neighbour of `x` in the direction of the sign of `by`.
@@ -74,6 +82,37 @@ mod tests {
                 assert!(clearance >= needed && clearance < 2.0 * needed);
             }
         }
+    }
+
+    #[test]
+    fn points_at_edges_move_inward_and_no_farther_than_needed() {
+        let (e1, e2) = (DVec3::new(1e4, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.0));
+        let triangle = [e1, e2, e1.cross(e2)];
+        let error = Vec3A::splat(1e-3);
+        let least = 2e-3 * 3.0_f64.sqrt();
+        // On each edge, in each corner, beyond an edge by rounding, inside.
+        for (u, v) in [
+            (0.5, 0.0),
+            (0.0, 0.5),
+            (0.5, 0.5),
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (0.0, 1.0),
+            (0.3, -1e-9),
+            (0.25, 0.25),
+            (1e-8, 0.3),
+        ] {
+            let p = u * e1 + v * e2;
+            let moved = inset(p, [1.0 - u - v, u, v], triangle, error);
+            let [x, y] = [moved.x, moved.y];
+            let to_slope = (1e4 - x - 5e3 * y) / (1.0_f64 + 5e3_f64.powi(2)).sqrt();
+            let corner = u == 1.0 || v == 1.0;
+            let needed = if corner { 0.0 } else { 0.999 * least };
+            assert!(x >= needed && y >= needed && to_slope >= needed, "{moved}");
+            assert!(moved.distance(p) < 2.0 * least, "{moved}");
+        }
+        let inside = DVec3::new(2e3, 0.5, 0.0);
+        assert_eq!(inset(inside, [0.55, 0.2, 0.25], triangle, error), inside);
     }
 
     #[test]

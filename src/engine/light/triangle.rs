@@ -101,11 +101,10 @@ impl TriangleLight {
     pub fn sample_le(&self, u_pos: Vec2, u_dir: Vec2) -> EmissionSample {
         let b = sample_triangle(u_pos);
         let b = [b.x, b.y, (1.0 - b.x - b.y).max(0.0)];
-        let within = self.point(b).1;
+        let (p, p_error) = self.point(b);
         let [v0, v1, v2] = self.corners.map(|v| v.as_dvec3());
-        let cross = self.cross.as_dvec3();
-        let b = inset(b.map(f64::from), v1 - v0, v2 - v0, cross, within);
-        let (p, p_error) = self.point(b.map(|b| b as f32));
+        let edges = [v1 - v0, v2 - v0, self.cross.as_dvec3()];
+        let p = inset(p.as_dvec3(), b.map(f64::from), edges, p_error).as_vec3a();
         emit_from_surface(p, p_error, self.n, self.area, self.radiance, u_dir)
     }
 

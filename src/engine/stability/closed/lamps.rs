@@ -134,7 +134,7 @@ fn small(run: &mut Run) {
     let hits = run.variant.name == "hits";
     // By chance hits a ball of area A is found once in 2π/A samples.
     let least = match hits {
-        true => run.pick(-2, -4),
+        true => run.pick(-2, -3),
         false => -12,
     };
     for inverse in decades(0..=-least, if hits { 1 } else { run.pick(4, 2) }) {
