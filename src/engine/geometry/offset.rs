@@ -23,8 +23,9 @@ pub fn offset_origin(p: Vec3A, p_error: Vec3A, n_g: Vec3A, d: Vec3A) -> Vec3A {
     )
 }
 
-/// The point `p` of barycentric weights `b`, moved within its triangle until it is at least twice
-/// `p_error` from each edge, or a quarter of the height over it where that is less.
+/// The point `p` of barycentric weights `b`, moved within its triangle until it is at least four
+/// times `p_error` from each edge, or a quarter of the height over it where that is less. Rounding
+/// moves a point by `p_error`, and what [`offset_origin`] adds to each coordinate by twice as much.
 ///
 /// A point that rounding puts on an edge lies on the neighbour's plane, too, or behind it: a ray
 /// that leaves it towards a wall it stands at would meet that wall at `t` ≤ 0 and slip out of the
@@ -33,7 +34,7 @@ pub fn offset_origin(p: Vec3A, p_error: Vec3A, n_g: Vec3A, d: Vec3A) -> Vec3A {
 pub fn inset(p: DVec3, b: [f64; 3], [e1, e2, cross]: [DVec3; 3], p_error: Vec3A) -> DVec3 {
     let longest = e1.length_squared().max(e2.length_squared());
     let longest = longest.max((e2 - e1).length_squared());
-    let least = 2.0 * p_error.as_dvec3().length();
+    let least = 4.0 * p_error.as_dvec3().length();
     let nearest = b[0].min(b[1]).min(b[2]).max(0.0);
     // The height over an edge is twice the area, |cross|, by its length.
     if nearest.powi(2) * cross.length_squared() >= least.powi(2) * longest {
@@ -89,7 +90,7 @@ mod tests {
         let (e1, e2) = (DVec3::new(1e4, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.0));
         let triangle = [e1, e2, e1.cross(e2)];
         let error = Vec3A::splat(1e-3);
-        let least = 2e-3 * 3.0_f64.sqrt();
+        let least = 4e-3 * 3.0_f64.sqrt();
         // On each edge, in each corner, beyond an edge by rounding, inside.
         for (u, v) in [
             (0.5, 0.0),
