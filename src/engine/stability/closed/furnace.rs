@@ -119,7 +119,7 @@ fn directional_albedo(run: &mut Run) {
                 ..SceneDesc::default()
             };
             let exact = oracles::ggx_albedo(f64::from(alpha), f64::from(cos));
-            let how = Sampling::new(4, run.pick(1024, 8192), run.pick(0.02, 0.005));
+            let how = Sampling::new(4, run.pick(1024, 1 << 14), run.pick(0.02, 0.005));
             let job = run.job(&desc);
             let curve = format!("cosθ = {cos}");
             // Shadow rays alone do not find a lobe that is narrower than their density of the sky.

@@ -75,6 +75,10 @@ fn power(run: &mut Run) {
         ("power lost", Roulette::Lose),
     ] {
         for &rho in albedos {
+            // Photons that lose power are followed until little is left: seven thousand landings.
+            if rho > 0.99 && roulette == Roulette::Lose {
+                continue;
+            }
             let scene = build(&SceneDesc {
                 materials: vec![diffuse("wall", rho)],
                 spheres: vec![sphere(0, Vec3::ZERO, 2.0, true)],
@@ -137,7 +141,7 @@ fn lens(run: &mut Run) {
         let how = Sampling {
             layer: 5,
             rounding: 2e-5 + 0.5 * (most - least) / least,
-            ..Sampling::new(4, run.pick(2048, 1 << 14), run.pick(0.05, 0.02))
+            ..Sampling::new(4, run.pick(2048, 1 << 14), run.pick(0.05, 0.025))
         };
         run.picture(f64::from(n), "", &job, exact, &how);
     }
