@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Color32, Ui, Window};
+use egui::{Color32, Rangef, Ui, Window};
 use egui_plot::{
-    Corner, GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints,
-    Points, VLine,
+    AxisHints, Corner, GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot,
+    PlotPoints, Points, VLine,
 };
 
 use crate::plot::{Chart, Curve};
@@ -33,12 +33,10 @@ pub fn show(ui: &mut Ui, workspace: &Workspace, height: f32, large: bool) {
         .allow_zoom(false)
         .allow_drag(false)
         .allow_boxed_zoom(false)
-        .x_axis_label(&chart.x_label)
-        .y_axis_label(&chart.y_label)
+        .custom_x_axes(vec![axis(AxisHints::new_x(), &chart.x_label)])
+        .custom_y_axes(vec![axis(AxisHints::new_y(), &chart.y_label)])
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
-        .x_axis_formatter(power)
-        .y_axis_formatter(power)
         .label_formatter(move |at| hover(at, &along))
         .show(ui, |plot| {
             for curve in &chart.curves {
@@ -61,6 +59,14 @@ pub fn show(ui: &mut Ui, workspace: &Workspace, height: f32, large: bool) {
     response
         .response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Error plot"));
+}
+
+/// An axis of powers of ten: they are short, and stand close where there are many.
+fn axis<'a>(hints: AxisHints<'a>, label: &str) -> AxisHints<'a> {
+    hints
+        .label(label)
+        .formatter(power)
+        .label_spacing(Rangef::new(16.0, 30.0))
 }
 
 /// Draws it in a window of its own.
