@@ -69,16 +69,12 @@ fn stored(scene: &Scene, roulette: Roulette, index: u64, photons: usize) -> f64 
 }
 
 fn power(run: &mut Run) {
-    let albedos: &[f32] = run.pick(&[0.9], &[0.5, 0.9, 0.99, 0.999]);
+    let albedos: &[f32] = run.pick(&[0.9], &[0.5, 0.9, 0.99]);
     for (name, roulette) in [
         ("power kept", Roulette::Keep),
         ("power lost", Roulette::Lose),
     ] {
         for &rho in albedos {
-            // Photons that lose power are followed until little is left: seven thousand landings.
-            if rho > 0.99 && roulette == Roulette::Lose {
-                continue;
-            }
             let scene = build(&SceneDesc {
                 materials: vec![diffuse("wall", rho)],
                 spheres: vec![sphere(0, Vec3::ZERO, 2.0, true)],

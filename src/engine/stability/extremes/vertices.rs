@@ -202,7 +202,7 @@ fn metropolis(run: &mut Run) {
     let (exact, half) = mean_of(&means(&path, run.pick(64, 512)));
     let how = Sampling {
         rounding: 2e-5 + half / exact,
-        ..Sampling::new(16, run.pick(256, 2048), run.pick(0.05, 0.02))
+        ..Sampling::new(16, run.pick(256, 4096), run.pick(0.05, 0.02))
     };
     let job = run.job(&islands);
     run.picture(3.0, "two islands", &job, exact, &how);
