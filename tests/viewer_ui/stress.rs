@@ -18,12 +18,11 @@ fn stressed(workspace: Workspace) -> Desk {
 }
 
 fn asked_for(desk: &Desk) -> Option<String> {
-    let asked = desk.state().requests.iter();
-    let loads = asked.filter_map(|request| match request {
+    let mut asked = desk.state().requests.iter().rev();
+    asked.find_map(|request| match request {
         Request::Load(source) => Some(source.short_name()),
         _ => None,
-    });
-    loads.last()
+    })
 }
 
 #[test]
