@@ -80,9 +80,9 @@ fn brightest(id: &str, depth: Depth) -> usize {
         "light" => 3,
         "whitted" | "monte-carlo" => 4,
         // A walk merges with the vertices of all others: as many as the room is bright.
-        "sppm" => 2 + usize::from(full),
+        "sppm" => 2,
         // Connections grow with the square of the length of walks.
-        "bdpt" | "vcm" => 1 + usize::from(full),
+        "bdpt" | "vcm" => 1,
         // Chains of as many numbers as their longest walk takes.
         _ => 1,
     }
