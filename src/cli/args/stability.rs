@@ -8,7 +8,7 @@ use clap::Args;
 #[derive(Debug, Args)]
 #[command(
     after_help = "The exit code is 1 if a case fails. --quick is the default and takes minutes, \
-                  --full half an hour."
+                  --full a quarter of an hour."
 )]
 pub struct StabilityArgs {
     /// Cases, separated by commas; ids of `lightscope list cases` [default: all].
