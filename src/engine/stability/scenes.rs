@@ -280,3 +280,26 @@ pub fn bumpy_sphere(n: u32, scale: f32, center: Vec3) -> (Vec<Vec3>, Vec<[u32; 3
     }
     (positions, triangles)
 }
+
+/// A closed cube of half edge `scale` around `center`, each face `n` × `n` squares in one plane:
+/// boxes around their parts have no thickness, and end where their neighbours begin.
+pub fn tessellated_cube(n: u32, scale: f32, center: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let step = |i: u32| 2.0 * i as f32 / n as f32 - 1.0;
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for (axis, side) in [0, 1, 2].into_iter().flat_map(|a| [(a, -1.0), (a, 1.0)]) {
+        let first = positions.len() as u32;
+        for (i, j) in (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+            let mut p = Vec3::ZERO;
+            p[axis] = side;
+            p[(axis + 1) % 3] = step(i);
+            p[(axis + 2) % 3] = step(j);
+            positions.push(center + scale * p);
+        }
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let at = |i: u32, j: u32| first + i * (n + 1) + j;
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    (positions, triangles)
+}

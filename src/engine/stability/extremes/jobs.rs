@@ -1,4 +1,4 @@
-//! Jobs of any size, empty ones, any number of threads, and layers.
+//! Jobs of any size, empty ones, and layers.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,6 @@ use super::super::case::{Case, Fit, Run};
 use super::super::estimate::{Sampling, frame, mean_of_layer};
 use super::super::fits;
 use super::super::scenes::{diffuse, point_light, room, sky, sphere, square, view};
-use crate::engine::film::Frame;
 use crate::engine::scene::desc::SceneDesc;
 
 /// Pictures of odd shapes.
@@ -35,18 +34,6 @@ pub const EMPTY: Case = Case {
     run: empty,
 };
 
-/// Any number of threads.
-pub const THREADS: Case = Case {
-    id: "threads",
-    label: "Threads",
-    summary: "The room on 1, 2 and 16 threads.",
-    parameter: "threads",
-    oracle: "the same bits in every layer",
-    stiff: false,
-    fit: all,
-    run: threads,
-};
-
 /// The sum of the layers.
 pub const LAYERS: Case = Case {
     id: "layers",
@@ -59,7 +46,7 @@ pub const LAYERS: Case = Case {
     run: layers,
 };
 
-fn all(id: &str) -> Fit {
+pub(super) fn all(id: &str) -> Fit {
     match id {
         "path" => fits::path_modes(id),
         "monte-carlo" => fits::direct_point(id),
@@ -157,36 +144,6 @@ fn empty(run: &mut Run) {
         let off = off.fold(0.0, |most: f64, d| if d <= most { most } else { d });
         let off = if found.is_none() { f64::NAN } else { off };
         run.value((i + 1) as f64, name, off, 0.0, 1e-6);
-    }
-}
-
-fn bits(frame: &Frame) -> Vec<u32> {
-    let values = frame.layers.iter().flat_map(|l| l.pixels.iter().flatten());
-    values.map(|v| v.to_bits()).collect()
-}
-
-fn threads(run: &mut Run) {
-    let mut job = run.job(&room(1.0));
-    job.settings.layers.components = true;
-    job.size = UVec2::new(24, 16);
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .ok()?;
-        let found = pool.install(|| frame(&job, 0, 2))?;
-        Some(bits(&found))
-    };
-    let one = on(1);
-    for threads in [2, 16] {
-        let same = one.is_some() && on(threads) == one;
-        run.count(
-            threads as f64,
-            "",
-            u64::from(!same),
-            1,
-            "compared with one thread",
-        );
     }
 }
 

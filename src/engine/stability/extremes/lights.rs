@@ -1,29 +1,15 @@
-//! Lights of any power, and lights that touch what they shine on.
+//! Lights that touch what they shine on, and light that cannot be found.
 
 use glam::Vec3;
 
 use super::super::case::{Case, Fit, Run, decades};
 use super::super::estimate::{Sampling, frame, mean_of_layer};
+use super::super::fits;
 use super::super::scenes::{diffuse, glass, mirror, point_light, sphere, square, view};
-use super::super::{fits, oracles};
 use crate::engine::event::Letter;
 use crate::engine::math::Rgb;
 use crate::engine::path::{ClassId, Expression, PathClasses};
 use crate::engine::scene::desc::SceneDesc;
-
-/// One light outshines another that is seen.
-pub const RANGE: Case = Case {
-    id: "light-dynamic-range",
-    label: "Dynamic range of lights",
-    summary: "A plane under a point light, and a lamp of R times the power that no wall lets \
-              through.",
-    parameter: "ratio of powers R",
-    oracle: "ρ I cosθ/(π r²): the hidden lamp adds nothing. Who draws one light in proportion to \
-             its power has a variance that grows with R: judged up to 10², then reported",
-    stiff: true,
-    fit: range_fit,
-    run: range,
-};
 
 /// A surface within a lamp, at any distance of its wall.
 pub const TOUCHING: Case = Case {
@@ -50,44 +36,6 @@ pub const UNSAMPLEABLE: Case = Case {
     fit: fits::diffuse_in_sky,
     run: unsampleable,
 };
-
-fn range_fit(id: &str) -> Fit {
-    match id {
-        "sppm" | "vcm" | "pssmlt" => Fit::LeftOut("they draw lights as bdpt does, which is asked"),
-        _ => fits::direct_point(id),
-    }
-}
-
-fn range(run: &mut Run) {
-    let (rho, intensity) = (0.5_f32, 7.0_f32);
-    for ratio in decades(0..=run.pick(8, 12), 2) {
-        let floor = square(0, Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0);
-        let desc = SceneDesc {
-            camera: view(Vec3::Y * 2.0, Vec3::ZERO, 40.0, 4),
-            materials: vec![diffuse("floor", rho), diffuse("wall", 0.0)],
-            meshes: vec![floor],
-            // Closed all around the hidden lamp.
-            spheres: vec![sphere(1, Vec3::new(0.0, -9.0, 0.0), 1.0, true)],
-            lights: vec![
-                point_light(Vec3::Y, intensity),
-                point_light(Vec3::new(0.0, -9.0, 0.0), intensity * ratio as f32),
-            ],
-            ..SceneDesc::default()
-        };
-        let tan = 20_f64.to_radians().tan();
-        let exact = oracles::falloff(f64::from(rho), f64::from(intensity), 1.0, 2.0, tan);
-        let job = run.job(&desc);
-        let (_, share) = job.scene.lights.sample(0.0).unwrap_or((0, 0.0));
-        debug_assert!(share > 0.0);
-        let how = Sampling::new(16, run.pick(1 << 14, 1 << 17), run.pick(0.05, 0.02));
-        let all_lights = run.variant.name == "kajiya" || run.id() == "whitted";
-        if all_lights || ratio < 1e3 {
-            run.picture(ratio, "", &job, exact, &how);
-        } else {
-            run.report(ratio, "", &job, exact, &how);
-        }
-    }
-}
 
 fn touching_fit(id: &str) -> Fit {
     match id {

@@ -2,11 +2,13 @@
 
 mod film;
 mod jobs;
+mod light_range;
 mod lights;
 mod photons;
 mod rays;
 mod scattering;
 mod space;
+mod threads;
 mod vertices;
 mod volume;
 
@@ -23,7 +25,7 @@ pub const CASES: &[&Case] = &[
     &rays::COINCIDENT,
     &rays::THIN,
     &vertices::NORMALS,
-    &lights::RANGE,
+    &light_range::RANGE,
     &lights::TOUCHING,
     &lights::UNSAMPLEABLE,
     &scattering::GGX,
@@ -39,6 +41,6 @@ pub const CASES: &[&Case] = &[
     &film::ROULETTE,
     &jobs::SIZES,
     &jobs::EMPTY,
-    &jobs::THREADS,
+    &threads::THREADS,
     &jobs::LAYERS,
 ];

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec3A};
 
 use super::super::case::{Case, Run};
 use super::super::fits;
-use super::super::scenes::{block, bumpy_sphere};
+use super::super::scenes::{block, bumpy_sphere, tessellated_cube};
 use crate::engine::geometry::{Geometry, MeshInput, Ray};
 use crate::engine::math::Frame;
 use crate::engine::sampling::warp::{sample_cosine_hemisphere, sample_sphere};
@@ -29,8 +29,8 @@ pub const AXIS: Case = Case {
 pub const WATERTIGHT: Case = Case {
     id: "watertight",
     label: "Watertight meshes",
-    summary: "Rays from within a closed bumpy mesh at its vertices and edges, of several sizes \
-              and places.",
+    summary: "Rays from within at the vertices and edges of a closed bumpy mesh and of a cube of \
+              many flat squares, of several sizes and places.",
     parameter: "scale",
     oracle: "none gets out",
     stiff: false,
@@ -54,9 +54,11 @@ pub const DEGENERATE: Case = Case {
 pub const COINCIDENT: Case = Case {
     id: "coincident",
     label: "Coincident triangles",
-    summary: "A hundred thousand triangles in one place.",
+    summary: "A hundred thousand triangles in one place; and two meshes of different materials in \
+              one place.",
     parameter: "triangles",
-    oracle: "the first is hit, as fast as one",
+    oracle: "the first is hit, as fast as one; the second mesh is met neither by rays nor by what \
+             leaves the first. Split along the other diagonal they lie a rounding apart: reported",
     stiff: false,
     fit: fits::engine,
     run: coincident,
@@ -141,32 +143,50 @@ fn watertight(run: &mut Run) {
         (1.0, Vec3::new(1e4, -3e3, 5e3)),
     ];
     for (i, (scale, center)) in places.into_iter().enumerate() {
-        let (positions, triangles) = bumpy_sphere(24, scale, center);
-        let (mesh, _) = geometry(&positions, &triangles);
-        let mut s = sampler(10 + i as u64);
-        let mut leaked = 0;
-        for i in 0..rays {
-            let o = center + 0.4 * scale * point(&mut s);
-            let triangle = triangles[(s.next_1d() * triangles.len() as f32) as usize];
-            let [a, b] = [triangle[0], triangle[1]].map(|v| positions[v as usize]);
-            let target = if i % 2 == 0 {
-                a
-            } else {
-                a.lerp(b, s.next_1d())
-            };
-            let inside = Ray::new(o.into(), Vec3A::from(target - o).normalize());
-            leaked += u64::from(mesh.intersect(&inside).is_none());
-            let from = center + 4.0 * (target - center) + scale * point(&mut s);
-            let through = Vec3A::from(target + 0.01 * (o - target) - from);
-            leaked += u64::from(!mesh.occluded(&Ray::new(from.into(), through.normalize())));
-        }
-        let name = if center == Vec3::ZERO {
+        let place = if center == Vec3::ZERO {
             "at the origin"
         } else {
             "12000 sizes away"
         };
-        run.count(f64::from(scale), name, leaked, 2 * rays, "");
+        for (name, mesh) in [
+            ("bumpy", bumpy_sphere(24, scale, center)),
+            ("flat", tessellated_cube(24, scale, center)),
+        ] {
+            let leaked = leaks(&mesh, rays, 10 + i as u64, scale, center);
+            let curve = format!("{name}, {place}");
+            run.count(f64::from(scale), &curve, leaked, 2 * rays, "");
+        }
     }
+}
+
+/// Rays of `rays` at vertices and edges that get out of a mesh, and those of as many from outside
+/// that pass it.
+fn leaks(
+    (positions, triangles): &(Vec<Vec3>, Vec<[u32; 3]>),
+    rays: u64,
+    item: u64,
+    scale: f32,
+    center: Vec3,
+) -> u64 {
+    let (mesh, _) = geometry(positions, triangles);
+    let mut s = sampler(item);
+    let mut leaked = 0;
+    for i in 0..rays {
+        let o = center + 0.4 * scale * point(&mut s);
+        let triangle = triangles[(s.next_1d() * triangles.len() as f32) as usize];
+        let [a, b] = [triangle[0], triangle[1]].map(|v| positions[v as usize]);
+        let target = if i % 2 == 0 {
+            a
+        } else {
+            a.lerp(b, s.next_1d())
+        };
+        let inside = Ray::new(o.into(), Vec3A::from(target - o).normalize());
+        leaked += u64::from(mesh.intersect(&inside).is_none());
+        let from = center + 4.0 * (target - center) + scale * point(&mut s);
+        let through = Vec3A::from(target + 0.01 * (o - target) - from);
+        leaked += u64::from(!mesh.occluded(&Ray::new(from.into(), through.normalize())));
+    }
+    leaked
 }
 
 fn degenerate(run: &mut Run) {
@@ -235,6 +255,53 @@ fn coincident(run: &mut Run) {
         let note = format!("{:.1} times the time of one", seconds / alone);
         run.count(count as f64, "", wrong, trials, &note);
     }
+    let trials = run.pick(3000, 50_000);
+    let [second, again] = twins(&[[4, 5, 6], [4, 6, 7]], trials);
+    let note = "rays that meet the second of two meshes in one place";
+    run.count(4.0, "same diagonal", second, trials, note);
+    let note = "rays that leave the first and meet the second";
+    run.count(4.0, "same diagonal, leaving", again, 2 * trials, note);
+    // Rounded corners are not in one plane: which of the two lies before the other differs.
+    let [second, again] = twins(&[[4, 5, 7], [5, 6, 7]], trials);
+    let share = |n: u64, of: u64| n as f64 / of as f64;
+    let note = "share that meets the second mesh, half a unit in the last place before the first";
+    run.fact(4.0, "other diagonal", share(second, trials), note);
+    let note = "share that leaves one and meets the other";
+    run.fact(
+        4.0,
+        "other diagonal, leaving",
+        share(again, 2 * trials),
+        note,
+    );
+}
+
+/// Of two quads in one place of any tilt, the other of triangles `second`: how often that one is
+/// met first, and how often by what leaves the one that is met.
+fn twins(second: &[[u32; 3]; 2], trials: u64) -> [u64; 2] {
+    let mut s = sampler(7);
+    let (mut first_met, mut left_met) = (0, 0);
+    for _ in 0..trials {
+        let frame = Frame::from_normal(sample_sphere(s.next_2d()));
+        let center = Vec3A::from(point(&mut s));
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| Vec3::from(center + x * frame.s + y * frame.t));
+        let positions = [corners, corners].concat();
+        let both = [[0, 1, 2], [0, 2, 3], second[0], second[1]];
+        let (mesh, _) = geometry(&positions, &both);
+        let aim = center + 0.9 * point(&mut s).x * frame.s + 0.9 * point(&mut s).y * frame.t;
+        let ray = Ray::new(aim - 2.0 * frame.n, frame.n);
+        let Some(hit) = mesh.intersect(&ray) else {
+            first_met += 1;
+            continue;
+        };
+        first_met += u64::from(hit.prim > 1);
+        let at = mesh.interaction(&ray, &hit);
+        let d = frame.to_world(sample_cosine_hemisphere(s.next_2d()));
+        for d in [d, -d] {
+            left_met += u64::from(mesh.intersect(&at.spawn_ray(d)).is_some());
+        }
+    }
+    [first_met, left_met]
 }
 
 /// Rays that meet their own surface again, and that pass the other one.
