@@ -54,9 +54,7 @@ fn report(job: &RenderJob, seed: u64, maps: u32) -> Vec<NoiseBias> {
 }
 
 /// Sixteen runs of two passes over fresh maps against the reference, within the bias that the
-/// program reports from other maps. Whether bias falls as the area (smooth light) or as its root
-/// (an edge or a corner), 1.5 times the report covers it: the report assumes the area, and the root
-/// makes it a factor 1.25 too small.
+/// program reports from other maps.
 fn agrees_within_its_bias(scene: &str, set: &[(&str, &str)]) {
     let passes = 2;
     let mut all = vec![("fresh-maps", "on")];
@@ -85,14 +83,7 @@ fn agrees_within_its_bias(scene: &str, set: &[(&str, &str)]) {
         let biases: Vec<&[[f32; 3]]> = reports.iter().map(|r| r[index].bias.as_slice()).collect();
         let bias = Blocks::from_runs(&biases, width);
         let reference = reference_layer(scene, layer, width);
-        let verdict = compare_within(
-            layer,
-            &ours,
-            &reference,
-            Some((&bias, 1.5)),
-            whole,
-            LAYERS.len(),
-        );
+        let verdict = compare_within(layer, &ours, &reference, Some(&bias), whole, LAYERS.len());
         let sum = |r: &Vec<NoiseBias>| r[index].mean_bias();
         println!(
             "{scene} {layer}: reported bias {:.3} % of the image, worst block {:.1} standard errors \

@@ -162,21 +162,20 @@ pub fn compare(label: &str, a: &Blocks, b: &Blocks, whole: f64, family: usize) -
     compare_within(label, a, b, None, whole, family)
 }
 
-/// The same where `a` may be off by so many times the bias that it reports of itself.
+/// The same where `a` may be off by the bias that it reports of itself.
 pub fn compare_within(
     label: &str,
     a: &Blocks,
     b: &Blocks,
-    bias: Option<(&Blocks, f64)>,
+    bias: Option<&Blocks>,
     whole: f64,
     family: usize,
 ) -> Verdict {
     let mut complaints = Vec::new();
     let ((mean_a, var_a), (mean_b, var_b)) = (a.image(), b.image());
-    let factor = bias.map_or(0.0, |b| b.1);
-    let (slack, var_bias) = bias.map_or((0.0, 0.0), |(b, _)| b.image());
-    let se = (var_a + var_b + factor * factor * var_bias).sqrt();
-    let difference = ((mean_a - mean_b).abs() - factor * slack.abs()).max(0.0);
+    let (slack, var_bias) = bias.map_or((0.0, 0.0), Blocks::image);
+    let se = (var_a + var_b + var_bias).sqrt();
+    let difference = ((mean_a - mean_b).abs() - slack.abs()).max(0.0);
     if difference > (0.01 * whole).max(4.0 * se) {
         complaints.push(format!(
             "{label}: image mean {mean_a} against {mean_b}, error {se}"
@@ -189,12 +188,12 @@ pub fn compare_within(
     let mut caught = Vec::new();
     for block in 0..a.mean.len() {
         for c in 0..3 {
-            let (slack, var_bias) = bias.map_or((0.0, 0.0), |(b, _)| {
+            let (slack, var_bias) = bias.map_or((0.0, 0.0), |b| {
                 (b.mean[block][c].abs(), b.variance[block][c])
             });
-            let va = a.block_variance(block, c) + factor * factor * var_bias;
+            let va = a.block_variance(block, c) + var_bias;
             let vb = b.block_variance(block, c);
-            let difference = (a.mean[block][c] - b.mean[block][c]).abs() - factor * slack;
+            let difference = (a.mean[block][c] - b.mean[block][c]).abs() - slack;
             let difference = difference.max(0.0);
             // No sample of ours was lit there, so its error is unknown; where the reference is
             // next to black that is no wonder, and the image mean judges it.

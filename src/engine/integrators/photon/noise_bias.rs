@@ -2,13 +2,14 @@
 //!
 //! In the spirit of Hachisuka, Jarosz and Jensen 2010, *A Progressive Error Estimation Framework
 //! for Photon Density Estimation*: the bias of a density estimate grows with the area A of its
-//! disc: the mean of x_A is L + b·A + …. Several independent maps are read twice, over A and over
-//! A/16, by the same camera samples. The spread of x_A over the maps is its noise; 16/15 of the mean
-//! of x_A − x_(A/16) is its bias, known to 16/15 of that difference's own error.
+//! disc: with A where the light is smooth, with √A at its edges. Several independent maps are read
+//! twice, over A and over A/16, by the same camera samples. The spread of x_A over the maps is its
+//! noise; 4/3 of the mean of x_A − x_(A/16) is what is reported as its bias, known to 4/3 of that
+//! difference's own error: that is the bias of edges, and a quarter more than the bias of smooth
+//! light, so that the report bounds both.
 //!
-//! At an edge the bias grows with √A only, and the report is a fifth too small (with A/2 it would be
-//! 1.7 times too small, for half of the noise); nearer to a corner than a quarter of the radius it
-//! does not depend on A at all and is not seen.
+//! Nearer to a corner than a quarter of the radius the bias does not depend on A at all and is not
+//! seen.
 
 use std::sync::Arc;
 
@@ -22,8 +23,8 @@ use crate::engine::integrators::{Cancelled, Integrator, Pass, RenderStats};
 
 /// Share of the area that the second estimate is read over.
 const SHRUNK: f32 = 1.0 / 16.0;
-/// Bias over the difference of the two estimates, if it grows with the area.
-const EXTRAPOLATE: f64 = 1.0 / (1.0 - SHRUNK as f64);
+/// Bias over the difference of the two estimates, if it grows with the radius: 1/(1 − √(1/16)).
+const EXTRAPOLATE: f64 = 4.0 / 3.0;
 
 /// What was found, per pixel and channel, row by row.
 #[derive(Clone, Debug, Default)]
@@ -34,7 +35,7 @@ pub struct NoiseBias {
     pub mean: Vec<[f32; 3]>,
     /// Standard deviation of the picture of one map and one sample a pixel.
     pub noise: Vec<[f32; 3]>,
-    /// Estimated bias.
+    /// Estimated bias; where light is smooth, a quarter more than that.
     pub bias: Vec<[f32; 3]>,
     /// Standard error of that estimate.
     pub bias_error: Vec<[f32; 3]>,
