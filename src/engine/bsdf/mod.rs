@@ -19,7 +19,7 @@ mod view;
 pub use fresnel::mean_transmittance;
 pub use ggx::MIN_ALPHA;
 pub use lobe::Lobe;
-pub use scatter::{Bsdf, BsdfSample, MAX_LOBES};
+pub use scatter::{Bsdf, BsdfSample, Evaluation, MAX_LOBES};
 
 /// Which quantity travels along the path being built: decides the direction of non-symmetric
 /// scattering, which is the 1/η² of refraction and shading normals (Veach 1997, chapter 5).

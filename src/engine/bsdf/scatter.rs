@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 use super::Transport;
 use super::lobe::Lobe;
 use super::shares::Shares;
-use super::view::View;
+use super::view::{Crossing, View};
 use crate::engine::event::{Event, Letter};
 use crate::engine::geometry::interaction::SurfaceInteraction;
 use crate::engine::math::Rgb;
@@ -27,6 +27,17 @@ pub struct BsdfSample {
     pub event: Event,
     /// Index on `wi`'s side over the index on `wo`'s side on transmission, 1 on reflection.
     pub eta: f32,
+}
+
+/// An event between two known directions.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Evaluation {
+    /// As [`Bsdf::eval`].
+    pub f: Rgb,
+    /// As [`Bsdf::pdf`] toward `wi`.
+    pub toward: f32,
+    /// The same from `wi` toward `wo`.
+    pub back: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -174,17 +185,56 @@ impl Bsdf {
         let Some((view, crossing)) = self.directions(wo, wi) else {
             return 0.0;
         };
-        let shares = self.shares(&view);
-        let mut pdf = 0.0;
-        for (i, l) in self.lobes_of(event) {
-            // The density is the same for either transport.
-            pdf += shares.lobe[i] * l.lobe.eval(&view, &crossing, Transport::Radiance).1;
+        // The density is the same for either transport.
+        self.eval_and_pdf(event, &view, &crossing, Transport::Radiance)
+            .1
+    }
+
+    /// What [`Self::eval`] and [`Self::pdf`] both ways say, in one; black without densities where
+    /// nothing is scattered.
+    #[inline]
+    pub fn evaluate(
+        &self,
+        event: Event,
+        wo: Vec3A,
+        wi: Vec3A,
+        transport: Transport,
+    ) -> Evaluation {
+        let Some((view, crossing)) = self.directions(wo, wi) else {
+            return Evaluation::default();
+        };
+        let (f, toward) = self.eval_and_pdf(event, &view, &crossing, transport);
+        if f.is_black() {
+            return Evaluation::default();
         }
-        if pdf > 0.0 { pdf / shares.total } else { 0.0 }
+        Evaluation {
+            f: f * view.adjoint(&crossing, transport),
+            toward,
+            back: self.pdf(event, wi, wo),
+        }
+    }
+
+    /// Before the factor of the adjoint.
+    #[inline]
+    fn eval_and_pdf(
+        &self,
+        event: Event,
+        view: &View,
+        crossing: &Crossing,
+        transport: Transport,
+    ) -> (Rgb, f32) {
+        let shares = self.shares(view);
+        let (mut f, mut pdf) = (Rgb::BLACK, 0.0);
+        for (i, l) in self.lobes_of(event) {
+            let (f_lobe, pdf_lobe) = l.lobe.eval(view, crossing, transport);
+            f += l.weight * f_lobe;
+            pdf += shares.lobe[i] * pdf_lobe;
+        }
+        (f, if pdf > 0.0 { pdf / shares.total } else { 0.0 })
     }
 
     #[inline]
-    fn directions(&self, wo: Vec3A, wi: Vec3A) -> Option<(View, super::view::Crossing)> {
+    fn directions(&self, wo: Vec3A, wi: Vec3A) -> Option<(View, Crossing)> {
         let view = View::new(self.n_g, self.n_s, wo)?;
         let crossing = view.crossing(wi)?;
         Some((view, crossing))

@@ -225,8 +225,12 @@ impl Bidirectional {
         let Some(start) = &work.start else { return };
         let lens = eye.densities(1)[0];
         for s in 1..=light.len() {
-            light_sampler.seek(lens_dimension(cx.plan, s));
-            let u = light_sampler.next_2d();
+            let u = if cx.plan.lens {
+                light_sampler.seek(lens_dimension(cx.plan, s));
+                light_sampler.next_2d()
+            } else {
+                Vec2::ZERO
+            };
             if s == 1 {
                 connector.join_light(light, start, &lens, u);
             } else {

@@ -11,7 +11,7 @@ use super::strategies::Strategies;
 use super::subpath::{Escape, LightStart, Subpath};
 use super::vertex::Vertex;
 use super::weight::{Density, Join, Meeting, weight};
-use crate::engine::bsdf::Transport;
+use crate::engine::bsdf::{Evaluation, Transport};
 use crate::engine::camera::CameraSample;
 use crate::engine::event::{Event, Letter};
 use crate::engine::geometry::{Ray, offset_origin};
@@ -67,12 +67,13 @@ struct End {
 impl End {
     #[inline]
     fn new(v: &Vertex, event: Event, class: ClassId, wi: Vec3A, transport: Transport) -> Self {
+        let Evaluation { f, toward, back } = v.evaluate(event, wi, transport);
         Self {
             class,
             diffuse: event == Event::Diffuse,
-            f: v.eval(event, v.si.wo, wi, transport),
-            toward: v.pdf(event, v.si.wo, wi),
-            back: v.pdf(event, wi, v.si.wo),
+            f,
+            toward,
+            back,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3A};
 
-use crate::engine::bsdf::{Bsdf, BsdfSample, Transport};
+use crate::engine::bsdf::{Bsdf, BsdfSample, Evaluation, Transport};
 use crate::engine::event::Event;
 use crate::engine::geometry::SurfaceInteraction;
 use crate::engine::math::Rgb;
@@ -46,12 +46,17 @@ impl Vertex {
         self.bsdf.has_non_delta() || self.phase.is_some()
     }
 
-    /// f·|cosθ| of a non-delta event.
+    /// f·|cosθ| of a non-delta event between `si.wo` and `wi`, and its densities both ways.
     #[inline]
-    pub fn eval(&self, event: Event, wo: Vec3A, wi: Vec3A, transport: Transport) -> Rgb {
+    pub fn evaluate(&self, event: Event, wi: Vec3A, transport: Transport) -> Evaluation {
+        let wo = self.si.wo;
         match self.phase {
-            Some(phase) => Rgb::splat(phase.pdf(wo, wi)),
-            None => self.bsdf.eval(event, wo, wi, transport),
+            Some(phase) => Evaluation {
+                f: Rgb::splat(phase.pdf(wo, wi)),
+                toward: phase.pdf(wo, wi),
+                back: phase.pdf(wi, wo),
+            },
+            None => self.bsdf.evaluate(event, wo, wi, transport),
         }
     }
 
