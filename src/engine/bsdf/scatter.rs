@@ -193,13 +193,7 @@ impl Bsdf {
     /// What [`Self::eval`] and [`Self::pdf`] both ways say, in one; black without densities where
     /// nothing is scattered.
     #[inline]
-    pub fn evaluate(
-        &self,
-        event: Event,
-        wo: Vec3A,
-        wi: Vec3A,
-        transport: Transport,
-    ) -> Evaluation {
+    pub fn evaluate(&self, event: Event, wo: Vec3A, wi: Vec3A, transport: Transport) -> Evaluation {
         let Some((view, crossing)) = self.directions(wo, wi) else {
             return Evaluation::default();
         };

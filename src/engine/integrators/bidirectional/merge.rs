@@ -106,11 +106,10 @@ impl PhotonList {
 /// Photons that can be found by place.
 #[derive(Debug)]
 pub struct PhotonGrid {
+    /// Photons sorted by bucket: those that are visited together lie together.
     list: PhotonList,
     /// Photons of a bucket: from the entry of its number to the next.
     buckets: Vec<u32>,
-    /// Photons sorted by bucket.
-    order: Vec<u32>,
     /// Radius of merging, m.
     pub radius: f32,
     /// Light paths that were traced, those that stored nothing included.
@@ -137,16 +136,16 @@ impl PhotonGrid {
             buckets[i + 1] += buckets[i];
         }
         let mut next = buckets.clone();
-        let mut order = vec![0; hashes.len()];
+        let mut order = vec![0_u32; hashes.len()];
         for (i, h) in hashes.iter().enumerate() {
             let slot = &mut next[*h as usize];
             order[*slot as usize] = i as u32;
             *slot += 1;
         }
+        list.photons = order.iter().map(|i| list.photons[*i as usize]).collect();
         Self {
             list,
             buckets,
-            order,
             radius,
             paths,
         }
@@ -175,8 +174,8 @@ impl PhotonGrid {
         for i in 0..8 {
             let place = low + IVec3::new(i & 1, i >> 1 & 1, i >> 2);
             let b = bucket(place, count) as usize;
-            for k in self.buckets[b]..self.buckets[b + 1] {
-                let photon = &self.list.photons[self.order[k as usize] as usize];
+            let (first, end) = (self.buckets[b] as usize, self.buckets[b + 1] as usize);
+            for photon in &self.list.photons[first..end] {
                 // Cells of the same bucket are told apart, or a photon would count twice.
                 if photon.p.distance_squared(p) < r2 && cell_of(photon.p, cell) == place {
                     visit(photon);
@@ -205,7 +204,6 @@ impl PhotonGrid {
             + size_of_val(&*self.list.paths)
             + size_of_val(&*self.list.densities)
             + size_of_val(&*self.buckets)
-            + size_of_val(&*self.order)
     }
 }
 
