@@ -162,7 +162,12 @@ pub fn compare(label: &str, a: &Blocks, b: &Blocks, whole: f64, family: usize) -
     compare_within(label, a, b, None, whole, family)
 }
 
-/// The same where `a` may be off by the bias that it reports of itself.
+/// How far `difference` is from all that lies between 0 and `bias`.
+fn beyond(difference: f64, bias: f64) -> f64 {
+    (difference - difference.clamp(bias.min(0.0), bias.max(0.0))).abs()
+}
+
+/// The same where `a` may be off by the bias that it reports of itself, in its direction.
 pub fn compare_within(
     label: &str,
     a: &Blocks,
@@ -175,7 +180,7 @@ pub fn compare_within(
     let ((mean_a, var_a), (mean_b, var_b)) = (a.image(), b.image());
     let (slack, var_bias) = bias.map_or((0.0, 0.0), Blocks::image);
     let se = (var_a + var_b + var_bias).sqrt();
-    let difference = ((mean_a - mean_b).abs() - slack.abs()).max(0.0);
+    let difference = beyond(mean_a - mean_b, slack);
     if difference > (0.01 * whole).max(4.0 * se) {
         complaints.push(format!(
             "{label}: image mean {mean_a} against {mean_b}, error {se}"
@@ -188,13 +193,11 @@ pub fn compare_within(
     let mut caught = Vec::new();
     for block in 0..a.mean.len() {
         for c in 0..3 {
-            let (slack, var_bias) = bias.map_or((0.0, 0.0), |b| {
-                (b.mean[block][c].abs(), b.variance[block][c])
-            });
+            let (slack, var_bias) =
+                bias.map_or((0.0, 0.0), |b| (b.mean[block][c], b.variance[block][c]));
             let va = a.block_variance(block, c) + var_bias;
             let vb = b.block_variance(block, c);
-            let difference = (a.mean[block][c] - b.mean[block][c]).abs() - slack;
-            let difference = difference.max(0.0);
+            let difference = beyond(a.mean[block][c] - b.mean[block][c], slack);
             // No sample of ours was lit there, so its error is unknown; where the reference is
             // next to black that is no wonder, and the image mean judges it.
             let unlit = bias.is_some() && a.variance[block][c] == 0.0 && a.mean[block][c] == 0.0;

@@ -190,10 +190,16 @@ impl Bsdf {
             .1
     }
 
-    /// What [`Self::eval`] and [`Self::pdf`] both ways say, in one; black without densities where
-    /// nothing is scattered.
+    /// What [`Self::eval`] and [`Self::pdf`] both ways say, by two evaluations of the lobes instead
+    /// of three; black without densities where nothing is scattered.
     #[inline]
-    pub fn evaluate(&self, event: Event, wo: Vec3A, wi: Vec3A, transport: Transport) -> Evaluation {
+    pub fn eval_both_ways(
+        &self,
+        event: Event,
+        wo: Vec3A,
+        wi: Vec3A,
+        transport: Transport,
+    ) -> Evaluation {
         let Some((view, crossing)) = self.directions(wo, wi) else {
             return Evaluation::default();
         };

@@ -67,7 +67,7 @@ struct End {
 impl End {
     #[inline]
     fn new(v: &Vertex, event: Event, class: ClassId, wi: Vec3A, transport: Transport) -> Self {
-        let Evaluation { f, toward, back } = v.evaluate(event, wi, transport);
+        let Evaluation { f, toward, back } = v.eval_both_ways(event, wi, transport);
         Self {
             class,
             diffuse: event == Event::Diffuse,

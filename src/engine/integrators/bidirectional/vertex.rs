@@ -48,7 +48,7 @@ impl Vertex {
 
     /// f·|cosθ| of a non-delta event between `si.wo` and `wi`, and its densities both ways.
     #[inline]
-    pub fn evaluate(&self, event: Event, wi: Vec3A, transport: Transport) -> Evaluation {
+    pub fn eval_both_ways(&self, event: Event, wi: Vec3A, transport: Transport) -> Evaluation {
         let wo = self.si.wo;
         match self.phase {
             Some(phase) => Evaluation {
@@ -56,7 +56,7 @@ impl Vertex {
                 toward: phase.pdf(wo, wi),
                 back: phase.pdf(wi, wo),
             },
-            None => self.bsdf.evaluate(event, wo, wi, transport),
+            None => self.bsdf.eval_both_ways(event, wo, wi, transport),
         }
     }
 

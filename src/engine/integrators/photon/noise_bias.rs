@@ -5,11 +5,9 @@
 //! disc: with A where the light is smooth, with √A at its edges. Several independent maps are read
 //! twice, over A and over A/16, by the same camera samples. The spread of x_A over the maps is its
 //! noise; 4/3 of the mean of x_A − x_(A/16) is what is reported as its bias, known to 4/3 of that
-//! difference's own error: that is the bias of edges, and a quarter more than the bias of smooth
-//! light, so that the report bounds both.
-//!
-//! Nearer to a corner than a quarter of the radius the bias does not depend on A at all and is not
-//! seen.
+//! difference's own error: the bias, if it grows with √A, and 5/4 of it, if it grows with A. Either
+//! alone is bounded; where both meet with opposite signs the report may be too small. Near a corner
+//! the bias no longer depends on A: within about a sixth of the radius the report fades to nothing.
 
 use std::sync::Arc;
 

@@ -32,7 +32,7 @@ pub const RANGE: Case = Case {
 
 const RHO: f32 = 0.5;
 const INTENSITY: f32 = 7.0;
-/// Lights from 1e-12 to 1e12 W, or of equal power.
+/// Number of point lights.
 const MANY: usize = 100_000;
 
 fn range_fit(id: &str) -> Fit {
@@ -105,11 +105,11 @@ fn many(run: &mut Run) {
         rounding: 1e-4,
         ..Sampling::new(1, 1 << 12, 0.05)
     };
-    match run.id() {
-        // No light path lands in so narrow a view by chance.
-        "light" => {}
-        _ => run.picture(MANY as f64, "many lights", &run.job(&desc), exact, &how),
+    if run.id() == "light" {
+        let note = "not asked: no light path lands in so narrow a view by chance";
+        return run.fact(MANY as f64, "many lights", 0.0, note);
     }
+    run.picture(MANY as f64, "many lights", &run.job(&desc), exact, &how);
 }
 
 /// A sky of 64 × 32 texels.
@@ -165,14 +165,16 @@ fn probabilities(run: &mut Run) {
         let never = never.count() + MANY - lights.len();
         let note = "lights that are never drawn";
         run.count((x + 1) as f64, "drawn", never as u64, MANY as u64, note);
-        let mut wrong = 0;
-        for i in 0..MANY {
-            let drawn = lights.sample(i as f32 / MANY as f32);
-            let same = drawn.is_some_and(|(id, pmf)| pmf > 0.0 && pmf == lights.pmf(id));
-            wrong += u64::from(!same);
-        }
-        let note = "draws whose probability is not the one told";
-        run.count((x + 1) as f64, "told", wrong, MANY as u64, note);
+        // In cells of 2⁻²⁴: one for each light, the others in proportion to the powers.
+        let cells = 2_f64.powi(24);
+        let whole: f64 = (0..MANY).map(|i| f64::from(powers(i))).sum();
+        let off = (0..MANY).map(|i| {
+            let share = 1.0 + (cells - MANY as f64) * f64::from(powers(i)) / whole;
+            (f64::from(lights.pmf(i as u32)) * cells - share).abs()
+        });
+        let off = off.fold(0.0, f64::max);
+        let curve = "cells off the share of the power";
+        run.value((x + 1) as f64, curve, off, 0.0, 2.0);
     }
 }
 

@@ -19,7 +19,7 @@ pub const THREADS: Case = Case {
     id: "threads",
     label: "Threads and interruptions",
     summary: "The room on 1, 2 and 16 threads; with passes that are cancelled on the way; paused \
-              and resumed in a session; and rendered again from its settings, as a saved state is.",
+              and resumed in a session; and built again from its description.",
     parameter: "threads",
     oracle: "the same bits in every layer",
     stiff: false,
@@ -52,24 +52,32 @@ fn threads(run: &mut Run) {
         let note = "compared with one thread";
         run.count(threads as f64, "threads", differ, 1, note);
     }
-    let cancelled = cancelled(&job).map(|frame| bits(&frame));
-    let differ = u64::from(one.is_none() || cancelled != one);
-    run.count(2.0, "cancelled passes", differ, 1, "and then rendered");
-    let same = paused(&job).is_some_and(|found| {
-        let straight = frame(&job, 0, found.passes);
-        straight.is_some_and(|straight| bits(&straight) == bits(&found))
-    });
-    run.count(2.0, "paused and resumed", u64::from(!same), 1, "");
-    // A state holds what a scene is made of, not what was prepared.
+    let (found, cancelled) = cancelled(&job);
+    let differ = u64::from(one.is_none() || found.map(|frame| bits(&frame)) != one);
+    let note = format!("after {cancelled} passes that were cancelled on the way");
+    run.count(2.0, "cancelled passes", differ, 1, &note);
+    let found = paused(&job);
+    let straight = found.as_ref().and_then(|f| frame(&job, 0, f.passes));
+    let same = found.as_ref().map(|f| bits(f)) == straight.as_ref().map(bits);
+    let note = match &found {
+        Some(found) => format!("{} passes with a pause between", found.passes),
+        None => "the session did not pause in a minute".to_owned(),
+    };
+    let differ = u64::from(found.is_none() || !same);
+    run.count(2.0, "paused and resumed", differ, 1, &note);
+    // A saved state holds what a scene is made of, not what was prepared.
     job.scene = run.job(&room(1.0)).scene;
     let again = frame(&job, 0, 2).map(|frame| bits(&frame));
     let differ = u64::from(one.is_none() || again != one);
     run.count(2.0, "built and rendered again", differ, 1, "");
 }
 
-/// Two passes, each after some attempts that end at any moment.
-fn cancelled(job: &RenderJob) -> Option<Frame> {
-    let mut renderer = Renderer::new(job).ok()?;
+/// Two passes, each after some attempts that end at any moment, and how many of these ended early.
+fn cancelled(job: &RenderJob) -> (Option<Frame>, u64) {
+    let Ok(mut renderer) = Renderer::new(job) else {
+        return (None, 0);
+    };
+    let mut cancelled = 0;
     while renderer.passes() < 2 {
         let before = renderer.passes();
         for pause in [0, 30, 300, 3000] {
@@ -81,17 +89,18 @@ fn cancelled(job: &RenderJob) -> Option<Frame> {
                     newest.store(2, Ordering::Relaxed);
                 });
                 // One that was quick enough is a pass as any other.
-                let _ = renderer.render_pass(&cancel);
+                cancelled += u64::from(renderer.render_pass(&cancel).is_err());
             });
             if renderer.passes() > before {
                 break;
             }
         }
         if renderer.passes() == before {
-            renderer.render_pass(&Cancel::never()).ok()?;
+            // Nobody cancels this one.
+            let _ = renderer.render_pass(&Cancel::never());
         }
     }
-    Some(renderer.frame())
+    (Some(renderer.frame()), cancelled)
 }
 
 /// The frame of a session at its second pause.
