@@ -173,8 +173,9 @@ fn probabilities(run: &mut Run) {
             (f64::from(lights.pmf(i as u32)) * cells - share).abs()
         });
         let off = off.fold(0.0, f64::max);
-        let curve = "cells off the share of the power";
-        run.value((x + 1) as f64, curve, off, 0.0, 2.0);
+        // Two of them for rounding.
+        let curve = "probability against power";
+        run.value((x + 1) as f64, curve, off / cells, 0.0, 2.0 / cells);
     }
 }
 
