@@ -233,7 +233,7 @@ fn the_bias_in_a_corner_is_bounded_and_reported() {
         let report = |[full, shrunk]: &[f64; 2]| 4.0 / 3.0 * (full - shrunk);
         let ((full, error), (reported, _)) = (of(&|e| e[0]), of(&report));
         println!("{x} m from the corner: {full:.3} ± {error:.3}, reported {reported:.3}");
-        if x > 0.3 / 4.0 {
+        if x > 0.04 {
             // Light is missing, and no more than is reported.
             let (rest, error) = of(&|e| e[0] - report(e));
             assert!(rest > -4.0 * error, "{rest} ± {error}");

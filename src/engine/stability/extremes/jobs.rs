@@ -14,7 +14,7 @@ use crate::engine::scene::desc::SceneDesc;
 pub const SIZES: Case = Case {
     id: "sizes",
     label: "Sizes of pictures",
-    summary: "A plane under a point light in pictures of 1 × 1, 1 × 64 and 4096 × 1 pixels.",
+    summary: "A plane under a point light in pictures of 1 × 1, 1 × 64 and 16384 × 1 pixels.",
     parameter: "pixels",
     oracle: "ρ I cosθ/(π r²) straight below the light",
     stiff: false,
@@ -66,9 +66,9 @@ fn sizes_fit(id: &str) -> Fit {
 
 fn sizes(run: &mut Run) {
     let (rho, intensity) = (0.5_f32, 7.0_f32);
-    for size in [UVec2::new(1, 1), UVec2::new(1, 64), UVec2::new(4096, 1)] {
+    for size in [UVec2::new(1, 1), UVec2::new(1, 64), UVec2::new(16_384, 1)] {
         let desc = SceneDesc {
-            camera: view(Vec3::Y * 2.0, Vec3::ZERO, 1e-4, 1),
+            camera: view(Vec3::Y * 2.0, Vec3::ZERO, 2.5e-5, 1),
             materials: vec![diffuse("floor", rho)],
             meshes: vec![square(0, Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0)],
             lights: vec![point_light(Vec3::Y, intensity)],
@@ -78,7 +78,7 @@ fn sizes(run: &mut Run) {
         let mut job = run.job(&desc);
         job.size = size;
         let pixels = f64::from(size.x * size.y);
-        // The widest view has an angle of 4096 · 1e-4 degrees.
+        // The widest view has an angle of 16384 · 2.5e-5 degrees.
         let how = Sampling {
             rounding: 1e-4,
             // All pixels see one place: what merges there is the same for all of a pass.
