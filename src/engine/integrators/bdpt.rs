@@ -205,11 +205,7 @@ impl Bidirectional {
             }
             let stride = vertex_dimensions(cx.plan);
             eye_sampler.seek(CAMERA_DIMENSIONS + stride * (t as u32 - 2) + 4);
-            let u = eye_sampler.next_2d();
-            let lights = &cx.scene.lights;
-            if let Some((id, pmf)) = lights.sample(eye_sampler.next_1d())
-                && let Some(sample) = lights.get(id).sample_li(vertex.si.p, u)
-            {
+            if let Some((id, pmf, sample)) = cx.scene.lights.sample_li(vertex.si.p, eye_sampler) {
                 connector.shadow(eye, t, id, pmf, &sample);
             }
         }

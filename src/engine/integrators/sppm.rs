@@ -203,11 +203,7 @@ impl Estimator {
         out: &mut impl RadianceSink,
         stats: &mut RenderStats,
     ) {
-        let (lights, u) = (&cx.scene.lights, sampler.next_2d());
-        let Some((id, pmf)) = lights.sample(sampler.next_1d()) else {
-            return;
-        };
-        let Some(light) = lights.get(id).sample_li(si.p, u) else {
+        let Some((id, pmf, light)) = cx.scene.lights.sample_li(si.p, sampler) else {
             return;
         };
         out.note(|| Step::shadow_ray(id, pmf, &light));

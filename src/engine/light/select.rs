@@ -2,17 +2,18 @@
 
 use std::collections::HashMap;
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
 use super::directional::SceneSphere;
 use super::environment::is_radiance;
 use super::{
-    DirectionalLight, EnvironmentLight, Light, PointLight, QuadLight, SphereLight, SpotLight,
-    TriangleLight,
+    DirectionalLight, EnvironmentLight, Light, LightSample, PointLight, QuadLight, SphereLight,
+    SpotLight, TriangleLight,
 };
 use crate::engine::geometry::Geometry;
 use crate::engine::math::Rgb;
 use crate::engine::math::distribution::Discrete;
+use crate::engine::sampling::Sampler;
 use crate::engine::scene::desc::LightDesc;
 
 /// A primitive of the geometry that emits from its front side.
@@ -124,6 +125,23 @@ impl Lights {
     pub fn sample(&self, u: f32) -> Option<(u32, f32)> {
         let choice = self.selection.as_ref()?.sample(u);
         Some((choice.index as u32, choice.pmf))
+    }
+
+    /// Chooses a light by its power and draws a point of it for a shadow ray from `p`: the light's
+    /// index, the probability of the choice, and the point. The next three numbers are kept for
+    /// it; they are not drawn where a light without size is the only one.
+    #[inline]
+    pub fn sample_li(
+        &self,
+        p: Vec3A,
+        sampler: &mut impl Sampler,
+    ) -> Option<(u32, f32, LightSample)> {
+        let (u, choice) = match self.lights[..] {
+            [ref only] if only.is_delta() => (Vec2::ZERO, 0.0),
+            _ => (sampler.next_2d(), sampler.next_1d()),
+        };
+        let (id, pmf) = self.sample(choice)?;
+        Some((id, pmf, self.get(id).sample_li(p, u)?))
     }
 
     /// Probability with which [`Lights::sample`] chooses a light; 0 beyond the last.

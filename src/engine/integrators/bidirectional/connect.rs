@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::ends::{LightEnd, area_density};
+use super::ends::{LightEnd, area_density, areas};
 use super::merge::PhotonGrid;
 use super::strategies::Strategies;
 use super::subpath::{Escape, LightStart, Subpath};
@@ -60,7 +60,7 @@ struct End {
     f: Rgb,
     /// Density toward the other subpath, 1/sr.
     toward: f32,
-    /// Density back along its own, 1/sr.
+    /// Density of the vertex before, drawn by a walk that comes from there; 1/m².
     back: f32,
 }
 
@@ -73,7 +73,7 @@ impl End {
             diffuse: event == Event::Diffuse,
             f,
             toward,
-            back,
+            back: back * v.back,
         }
     }
 }
@@ -88,18 +88,6 @@ impl<K: Sink> Connector<'_, K> {
             .max_depth
             .is_none_or(|max| s + t <= max as usize + 2);
         short && self.strategies.is_on(s, t)
-    }
-
-    /// Density with which an event at vertex `i` of `path` draws the vertex before it, if its
-    /// density is `pdf_dir` in 1/sr: area density, or that of the light's end.
-    #[inline]
-    fn before(path: &Subpath, i: usize, pdf_dir: f32, start: Option<&LightEnd>) -> f32 {
-        let p = path.vertex(i).si.p;
-        match (i, start) {
-            (1, Some(end)) => end.arrive(pdf_dir, p),
-            (1, None) => 0.0, // the lens is never met
-            _ => area_density(pdf_dir, p, &path.vertex(i - 1).si),
-        }
     }
 
     /// s = 0: the last of the `t` vertices of the eye walk lies on a light.
@@ -242,7 +230,7 @@ impl<K: Sink> Connector<'_, K> {
                 }],
                 eye: eye.densities(t),
                 light_other: [end.arrive(z.toward, p), 0.0],
-                eye_other: [arrives, Self::before(eye, t - 1, z.back, None)],
+                eye_other: [arrives, z.back],
                 shadow_ratio,
                 zero_size: sample.is_delta,
                 infinite: end.infinite,
@@ -272,6 +260,7 @@ impl<K: Sink> Connector<'_, K> {
         }
         let wi = to / distance2.sqrt();
         let throughput = z.throughput * y.throughput * (1.0 / distance2);
+        let (to_light, to_eye) = areas(&y.si, &z.si);
         let plan = self.cx.plan;
         let mut visibility = None;
         for event in z.non_delta_events() {
@@ -301,14 +290,8 @@ impl<K: Sink> Connector<'_, K> {
                     meeting: Meeting::Connection,
                     light: light.densities(s),
                     eye: eye.densities(t),
-                    light_other: [
-                        area_density(eye_end.toward, z.si.p, &y.si),
-                        Self::before(light, s - 1, light_end.back, Some(&start.end)),
-                    ],
-                    eye_other: [
-                        area_density(light_end.toward, y.si.p, &z.si),
-                        Self::before(eye, t - 1, eye_end.back, None),
-                    ],
+                    light_other: [eye_end.toward * to_light, light_end.back],
+                    eye_other: [light_end.toward * to_eye, eye_end.back],
                     shadow_ratio: start.shadow_ratio,
                     zero_size: start.end.zero_size,
                     infinite: start.end.infinite,
@@ -344,22 +327,11 @@ impl<K: Sink> Connector<'_, K> {
                 return;
             }
             let (path, light) = grid.path(photon);
-            let previous = match (s, t) {
-                // Where the photon came from: its light, or the vertex before, whose cosine and
-                // distance are those of the densities that the light walk kept.
-                (2, _) => path.end.arrive(end.toward, v.si.p),
-                _ => end.toward * photon.back,
-            };
-            let ahead = if t > 2 {
-                area_density(end.back, v.si.p, &eye.vertex(t - 2).si)
-            } else {
-                0.0 // the lens is never met
-            };
             let join = Join {
                 light,
                 eye: eye.densities(t - 1),
-                light_other: [densities[t - 1].own, previous],
-                eye_other: [ahead, eye_before],
+                light_other: [densities[t - 1].own, end.toward * photon.back],
+                eye_other: [end.back, eye_before],
                 shadow_ratio: path.shadow_ratio,
                 diffuse: [true, false],
                 meeting: Meeting::Merging,
@@ -407,7 +379,7 @@ impl<K: Sink> Connector<'_, K> {
                 meeting: Meeting::Connection,
                 light: light.densities(s),
                 eye: std::slice::from_ref(lens),
-                light_other: [seen, Self::before(light, s - 1, end.back, Some(&start.end))],
+                light_other: [seen, end.back],
                 eye_other: [0.0; 2],
                 shadow_ratio: start.shadow_ratio,
                 zero_size: start.end.zero_size,

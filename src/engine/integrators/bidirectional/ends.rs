@@ -5,21 +5,43 @@ use glam::Vec3A;
 use crate::engine::geometry::SurfaceInteraction;
 use crate::engine::light::Light;
 
-/// A square of a distance whose inverse `f32` holds with room for densities of directions.
+/// A square of a distance whose inverse `f32` holds with room for densities of directions: where
+/// two points round to one, they keep a density.
 const LEAST_DISTANCE2: f32 = 1e-30;
 
+/// What turns densities of directions between two points, in 1/sr, into those of the points, in
+/// 1/m²: first that of `a`, seen from `b`, then that of `b`, seen from `a`. It is |cosθ| over the
+/// squared distance; places in a medium have no cosine. The density of distances is in none
+/// (CONTRACT rule 6): for places in a medium it is the same factor in all strategies, but for
+/// transmittance.
+#[inline]
+pub fn areas(a: &SurfaceInteraction, b: &SurfaceInteraction) -> (f32, f32) {
+    let to = b.p - a.p;
+    let inverse2 = 1.0 / to.length_squared().max(LEAST_DISTANCE2);
+    let direction = to * inverse2.sqrt();
+    (
+        cosine(a, direction) * inverse2,
+        cosine(b, direction) * inverse2,
+    )
+}
+
 /// Density in 1/m² of the point `si` if a walk at `from` draws the direction to it with the
-/// density `pdf_dir` in 1/sr. The density of distances is in none (CONTRACT rule 6): for places in
-/// a medium it is the same factor in all strategies, but for transmittance.
+/// density `pdf_dir` in 1/sr.
 #[inline]
 pub fn area_density(pdf_dir: f32, from: Vec3A, si: &SurfaceInteraction) -> f32 {
     let to = si.p - from;
-    let distance2 = to.length_squared();
+    let inverse2 = 1.0 / to.length_squared().max(LEAST_DISTANCE2);
+    pdf_dir * (cosine(si, to * inverse2.sqrt()) * inverse2)
+}
+
+/// |cosθ| of the unit direction `d`; 1 in a medium.
+#[inline]
+fn cosine(si: &SurfaceInteraction, d: Vec3A) -> f32 {
     if si.is_in_volume() {
-        // Where a medium is so dense that places round to one, they keep a density.
-        return pdf_dir / distance2.max(LEAST_DISTANCE2);
+        1.0
+    } else {
+        si.n_g.dot(d).abs()
     }
-    pdf_dir * (si.n_g.dot(to).abs() / distance2.sqrt()) / distance2
 }
 
 /// The light end of a path.
@@ -61,11 +83,7 @@ impl LightEnd {
     #[inline]
     pub fn depart(&self, le: (f32, f32), d: Vec3A, si: &SurfaceInteraction) -> f32 {
         if self.infinite {
-            le.0 * if si.is_in_volume() {
-                1.0
-            } else {
-                si.n_g.dot(d).abs()
-            }
+            le.0 * cosine(si, d)
         } else {
             area_density(le.1, self.p, si)
         }
@@ -82,8 +100,8 @@ impl LightEnd {
             return pdf_dir;
         };
         let to = self.p - from;
-        let distance2 = to.length_squared();
-        pdf_dir * (n.dot(to).abs() / distance2.sqrt()) / distance2
+        let inverse2 = 1.0 / to.length_squared().max(LEAST_DISTANCE2);
+        pdf_dir * (n.dot(to * inverse2.sqrt()).abs() * inverse2)
     }
 
     /// Density of a shadow ray to this end, drawn with `pdf_li` in 1/sr at `from`, over that of

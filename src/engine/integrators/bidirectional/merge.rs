@@ -7,7 +7,7 @@
 use glam::{IVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::ends::{LightEnd, area_density};
+use super::ends::LightEnd;
 use super::subpath::{LightStart, Subpath};
 use super::weight::Density;
 use crate::engine::event::Event;
@@ -27,8 +27,7 @@ pub struct Photon {
     pub flux: Rgb,
     /// Class of the events before.
     pub class: ClassId,
-    /// What turns a density in 1/sr, of the direction back, into that of the vertex before, 1/m²;
-    /// 0 where that is the light.
+    /// See [`Vertex`](super::vertex::Vertex).
     pub back: f32,
     /// Number of vertices of its path up to here, the light included.
     pub s: u32,
@@ -68,11 +67,7 @@ impl PhotonList {
                     wo: y.si.wo,
                     flux: y.throughput,
                     class: y.class,
-                    back: if s > 2 {
-                        area_density(1.0, y.si.p, &light.vertex(s - 2).si)
-                    } else {
-                        0.0
-                    },
+                    back: y.back,
                     s: s as u32,
                     path,
                 });

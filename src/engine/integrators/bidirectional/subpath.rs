@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::ends::{LightEnd, area_density};
+use super::ends::{LightEnd, area_density, areas};
 use super::vertex::Vertex;
 use super::weight::Density;
 use crate::engine::bsdf::{Bsdf, BsdfSample, Transport};
@@ -245,10 +245,6 @@ impl Walker<'_> {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
             let events = path.vertices.len();
             let first = first_dimension + vertex_dimensions(self.cx.plan) * events as u32;
-            sampler.seek(first);
-            let (direction, event, roulette) =
-                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
-
             // The next surface, or the sky.
             match transport {
                 Transport::Radiance => stats.ray_at(events as u32),
@@ -285,10 +281,16 @@ impl Walker<'_> {
                 }
             };
             stats.count_ray_fault(self.cx.scene.ray_fault(left, Some(&si)));
-            let own = match (path.vertices.last(), origin) {
-                (Some(last), _) => area_density(flight.pdf_dir, last.si.p, &si),
-                (None, Origin::Lens(p)) => area_density(flight.pdf_dir, p, &si),
-                (None, Origin::Light(end, le)) => end.depart(le, flight.ray.d, &si),
+            let (own, back) = match (path.vertices.last(), origin) {
+                (Some(last), _) => {
+                    let (back, ahead) = areas(&last.si, &si);
+                    (flight.pdf_dir * ahead, back)
+                }
+                (None, Origin::Lens(p)) => (area_density(flight.pdf_dir, p, &si), 0.0),
+                (None, Origin::Light(end, le)) => {
+                    let d = flight.ray.d;
+                    (end.depart(le, d, &si), end.arrive(1.0, si.p))
+                }
             };
             if own <= 0.0 {
                 return None; // seen exactly edge-on: nothing scatters there
@@ -308,6 +310,7 @@ impl Walker<'_> {
                 phase,
                 inside: flight.inside,
                 key,
+                back,
                 throughput: flight.throughput,
                 class: flight.class,
                 event: None,
@@ -330,13 +333,16 @@ impl Walker<'_> {
             if vertex.bsdf.is_empty() && phase.is_none() {
                 return None;
             }
+            sampler.seek(first);
+            let (direction, event, roulette) =
+                (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
             let Some(sample) = vertex.sample(event, direction, transport) else {
                 stats.below_horizon += u64::from(vertex.bsdf.has(Event::Glossy));
                 return None;
             };
             let backward = backward_pdf(vertex, &sample);
             self.advance(&mut flight, &si, &sample, transport)?;
-            self.keep_densities(origin, &si, backward, &sample, path);
+            Self::keep_densities(backward, &sample, path);
 
             // Russian roulette: survival divides the throughput and enters no weight.
             if events + 1 > self.roulette {
@@ -384,23 +390,13 @@ impl Walker<'_> {
 
     /// Keeps what the event at the last vertex decides: whether connections may end there, and the
     /// density with which the other walk would draw the vertex before it.
-    fn keep_densities(
-        &self,
-        origin: Origin,
-        si: &SurfaceInteraction,
-        backward: f32,
-        sample: &BsdfSample,
-        path: &mut Subpath,
-    ) {
+    fn keep_densities(backward: f32, sample: &BsdfSample, path: &mut Subpath) {
         let last = path.vertices.len();
-        path.vertices[last - 1].event = Some(sample.event);
+        let vertex = &mut path.vertices[last - 1];
+        vertex.event = Some(sample.event);
         path.densities[last].connectible = !sample.event.is_delta();
         path.densities[last].mergeable = sample.event == Event::Diffuse;
-        path.densities[last - 1].other = match origin {
-            _ if last >= 2 => area_density(backward, si.p, &path.vertices[last - 2].si),
-            Origin::Light(end, _) => end.arrive(backward, si.p),
-            Origin::Lens(_) => 0.0,
-        };
+        path.densities[last - 1].other = backward * vertex.back;
     }
 }
 

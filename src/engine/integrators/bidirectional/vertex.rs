@@ -22,6 +22,9 @@ pub struct Vertex {
     pub inside: Inside,
     /// Key of random numbers for what goes on from here, in scenes with media.
     pub key: u64,
+    /// What turns a density in 1/sr, of the direction back, into that of the vertex before, 1/m²
+    /// (at infinity 1/sr); 0 where no walk can meet that, as the lens.
+    pub back: f32,
     /// Product of f·cosθ/pdf over the events before, survival divided out: radiance from here
     /// times this reaches the pixel, or the flux that arrives here from the light in W.
     pub throughput: Rgb,

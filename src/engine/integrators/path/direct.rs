@@ -37,18 +37,15 @@ impl PathTracer {
         stats: &mut RenderStats,
     ) {
         let lights = &cx.scene.lights;
-        let u = sampler.next_2d();
         if self.mode == Mode::Mis {
-            let Some((id, pmf)) = lights.sample(sampler.next_1d()) else {
-                return;
-            };
-            if let Some(sample) = lights.get(id).sample_li(si.p, u) {
+            if let Some((id, pmf, sample)) = lights.sample_li(si.p, sampler) {
                 out.note(|| Step::shadow_ray(id, pmf, &sample));
                 self.add_light_sample(cx, walk, si, bsdf, &sample, pmf, out, stats);
             }
             return;
         }
         // One point of the square serves all lights, turned by a number of each light's own.
+        let u = sampler.next_2d();
         for (i, light) in lights.as_slice().iter().enumerate() {
             if let Some(sample) = light.sample_li(si.p, turned(u, i)) {
                 out.note(|| Step::shadow_ray(i as u32, 1.0, &sample));
