@@ -17,6 +17,9 @@ use super::sphere::Sphere;
 use super::traverse::{Child, Node, Tree, WIDTH};
 use super::triangle::{LANES, TriangleBlock};
 
+/// Up to here blocks of triangles and spheres together are met one by one, without boxes.
+const FEW: usize = 8;
+
 /// Share of the nodes that reinsertion tries to move: all in a small scene, where it costs a
 /// fraction of a second and makes rays a tenth faster; few in a large one.
 fn reinsertion_ratio(prims: usize) -> f32 {
@@ -39,6 +42,16 @@ pub fn build(mesh: &TriangleMesh, spheres: Vec<Sphere>, hidden: &[bool]) -> Tree
     if prims.is_empty() {
         return tree;
     }
+    tree.triangle_bounds = (0..triangles).fold(Bounds3::EMPTY, |all, prim| {
+        all.union(&prim_bounds(mesh, &[], prim))
+    });
+    let blocks: Vec<&[u32]> = prims[..prims.len() - tree.spheres.len()]
+        .chunks(LANES)
+        .collect();
+    if blocks.len() + tree.spheres.len() <= FEW {
+        tree.blocks = blocks.into_iter().map(|prims| block(mesh, prims)).collect();
+        return tree;
+    }
     let bounds = |prim: u32| prim_bounds(mesh, &tree.spheres, prim);
     let all = prims
         .iter()
@@ -46,9 +59,6 @@ pub fn build(mesh: &TriangleMesh, spheres: Vec<Sphere>, hidden: &[bool]) -> Tree
     let boxes = unit_boxes(&all, prims.iter().map(|&prim| bounds(prim)));
     let binary = binary_tree(&boxes, &prims);
     drop(boxes);
-    tree.triangle_bounds = (0..triangles).fold(Bounds3::EMPTY, |all, prim| {
-        all.union(&prim_bounds(mesh, &[], prim))
-    });
     let mut widening = Widening {
         counts: leaf_counts(&binary, triangles),
         binary,
@@ -60,6 +70,12 @@ pub fn build(mesh: &TriangleMesh, spheres: Vec<Sphere>, hidden: &[bool]) -> Tree
     let leaf_bounds = widening.leaf_bounds;
     fit_boxes(&mut tree, &leaf_bounds);
     tree
+}
+
+/// The triangles `prims`, at most [`LANES`].
+fn block(mesh: &TriangleMesh, prims: &[u32]) -> TriangleBlock {
+    let corners = |&prim: &u32| mesh.vertices(prim).map(|corners| (prim, corners));
+    TriangleBlock::new(prims.iter().filter_map(corners))
 }
 
 fn prim_bounds(mesh: &TriangleMesh, spheres: &[Sphere], prim: u32) -> Bounds3 {
@@ -208,9 +224,7 @@ impl Widening<'_> {
             all.union(&prim_bounds(self.mesh, &[], prim))
         });
         self.leaf_bounds.push(bounds);
-        let corners = |prim| self.mesh.vertices(prim).map(|corners| (prim, corners));
-        let block = TriangleBlock::new(prims.into_iter().filter_map(corners));
-        self.tree.blocks.push(block);
+        self.tree.blocks.push(block(self.mesh, &prims));
         Child::block(self.tree.blocks.len() - 1)
     }
 }

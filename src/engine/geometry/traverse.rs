@@ -4,12 +4,13 @@
 //! Wald 2013, section 4), so a triangle that its own test accepts is never culled by a box around
 //! it.
 
+use arrayvec::ArrayVec;
 use glam::{Vec3A, Vec4};
 
 use super::bounds::Bounds3;
 use super::ray::{Hit, Ray};
 use super::sphere::Sphere;
-use super::triangle::{ShearedRay, TriangleBlock, dominant_axis};
+use super::triangle::{Axis, ShearedRay, TriangleBlock};
 use crate::engine::math::float::MACHINE_EPSILON;
 
 /// Children of a node.
@@ -119,7 +120,7 @@ impl Node {
 /// The hierarchy in the order of traversal.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    /// Inner nodes; the first is the root. Empty for an empty scene.
+    /// Inner nodes; the first is the root. None for a scene of few surfaces: all leaves are met.
     pub nodes: Vec<Node>,
     /// Leaves of triangles.
     pub blocks: Vec<TriangleBlock>,
@@ -153,7 +154,7 @@ const LARGEST_INVERSE: f32 = f32::MAX / 4.0;
 
 impl BoxRay {
     fn new(ray: &Ray, triangles: &Bounds3) -> Self {
-        let k = dominant_axis(ray.d);
+        let k = Axis::dominant(ray.d) as usize;
         let error = if triangles.is_empty() {
             Vec3A::ZERO
         } else {
@@ -199,32 +200,18 @@ impl BoxRay {
 }
 
 /// What is still to visit, with the distance at which its box begins.
+#[derive(Default)]
 struct Stack {
-    items: [(f32, Child); Stack::SIZE],
-    len: usize,
+    items: ArrayVec<(f32, Child), 64>,
     /// Takes over for a tree of absurd depth.
     spilled: Vec<(f32, Child)>,
 }
 
 impl Stack {
-    const SIZE: usize = 64;
-
-    #[inline(always)]
-    fn new() -> Self {
-        Self {
-            items: [(0.0, Child(0)); Self::SIZE],
-            len: 0,
-            spilled: Vec::new(),
-        }
-    }
-
     #[inline(always)]
     fn push(&mut self, t: f32, child: Child) {
-        if self.len < Self::SIZE {
-            self.items[self.len] = (t, child);
-            self.len += 1;
-        } else {
-            self.spilled.push((t, child));
+        if let Err(full) = self.items.try_push((t, child)) {
+            self.spilled.push(full.element());
         }
     }
 
@@ -265,11 +252,7 @@ impl Stack {
 
     #[inline(always)]
     fn pop(&mut self) -> Option<(f32, Child)> {
-        if self.len == 0 {
-            return self.spilled.pop();
-        }
-        self.len -= 1;
-        Some(self.items[self.len & (Self::SIZE - 1)])
+        self.spilled.pop().or_else(|| self.items.pop())
     }
 }
 
@@ -280,65 +263,102 @@ fn sort_pair(a: &mut (f32, Child), b: &mut (f32, Child)) {
     }
 }
 
+/// What a ray has met.
+struct Found {
+    /// The closest so far.
+    hit: Hit,
+    some: bool,
+    /// One is enough.
+    any: bool,
+}
+
+impl Found {
+    /// Takes a hit. Returns the distance up to which more are wanted, and whether none is.
+    #[inline(always)]
+    fn meet(&mut self, hit: Hit) -> (f32, bool) {
+        if hit.t < self.hit.t || (hit.t == self.hit.t && hit.prim < self.hit.prim) {
+            self.hit = hit;
+            self.some = true;
+        }
+        (self.hit.t, self.any && self.some)
+    }
+}
+
 impl Tree {
     /// The closest hit in (0, `ray.t_max`), of the lowest primitive where several are equally far.
+    #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        match dominant_axis(ray.d) {
-            0 => self.walk::<0, false>(ray),
-            1 => self.walk::<1, false>(ray),
-            _ => self.walk::<2, false>(ray),
-        }
+        self.walk(ray, false)
     }
 
     /// Whether anything lies in (0, `ray.t_max`).
+    #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        match dominant_axis(ray.d) {
-            0 => self.walk::<0, true>(ray),
-            1 => self.walk::<1, true>(ray),
-            _ => self.walk::<2, true>(ray),
-        }
-        .is_some()
+        self.walk(ray, true).is_some()
     }
 
-    /// The closest hit, or with `ANY` some hit.
-    #[inline]
-    fn walk<const K: usize, const ANY: bool>(&self, ray: &Ray) -> Option<Hit> {
-        let mut child = self.nodes.first().map(|_| Child::node(0))?;
-        let boxes = BoxRay::new(ray, &self.triangle_bounds);
-        let sheared = ShearedRay::<K>::new(ray);
-        let mut stack = Stack::new();
-        // The end of the ray counts as a hit of primitive 0: nothing replaces it at equal distance.
-        let mut best = Hit {
-            t: ray.t_max,
-            prim: 0,
-            u: 0.0,
-            v: 0.0,
+    /// The closest hit, or `any`. One function for both: the instruction cache holds it.
+    #[inline(never)]
+    fn walk(&self, ray: &Ray, any: bool) -> Option<Hit> {
+        let mut found = Found {
+            // The end of the ray counts as a hit of primitive 0: nothing replaces it at equal
+            // distance.
+            hit: Hit {
+                t: ray.t_max,
+                prim: 0,
+                u: 0.0,
+                v: 0.0,
+            },
+            some: false,
+            any,
         };
-        let mut found = false;
+        let sheared = ShearedRay::new(ray);
+        if self.nodes.is_empty() {
+            self.meet_all(ray, &sheared, &mut found);
+        } else {
+            self.descend(ray, &sheared, &mut found);
+        }
+        found.some.then_some(found.hit)
+    }
+
+    /// Meets everything: quicker than boxes where there is little.
+    #[inline]
+    fn meet_all(&self, ray: &Ray, sheared: &ShearedRay, found: &mut Found) {
+        for block in &self.blocks {
+            if block.intersect(sheared, found.hit.t, |hit| found.meet(hit)) {
+                return;
+            }
+        }
+        for index in 0..self.spheres.len() {
+            if self.meet_sphere(ray, index, found) {
+                return;
+            }
+        }
+    }
+
+    /// Meets what lies in the boxes that the ray meets.
+    #[inline]
+    fn descend(&self, ray: &Ray, sheared: &ShearedRay, found: &mut Found) {
+        let mut child = Child::node(0);
+        let boxes = BoxRay::new(ray, &self.triangle_bounds);
+        let mut stack = Stack::default();
         loop {
             if child.is_leaf() {
-                let t_max = best.t;
-                let mut meet = |hit: Hit| {
-                    if hit.t < best.t || (hit.t == best.t && hit.prim < best.prim) {
-                        best = hit;
-                        found = true;
-                    }
-                    (best.t, ANY && found)
-                };
                 let done = if child.is_sphere() {
-                    self.sphere_hit(ray, child.index())
-                        .is_some_and(|hit| meet(hit).1)
+                    self.meet_sphere(ray, child.index(), found)
                 } else {
                     // Only what is no ray, with a direction that is 0 or NaN, meets an empty slot.
-                    let block = self.blocks.get(child.index())?;
-                    block.intersect(&sheared, t_max, meet)
+                    let Some(block) = self.blocks.get(child.index()) else {
+                        return;
+                    };
+                    block.intersect(sheared, found.hit.t, |hit| found.meet(hit))
                 };
                 if done {
-                    break;
+                    return;
                 }
             } else {
                 let node = &self.nodes[child.index()];
-                let (mask, enter) = boxes.meets(node, best.t);
+                let (mask, enter) = boxes.meets(node, found.hit.t);
                 if let Some(nearest) = stack.push_all_but_nearest(node, mask, enter) {
                     child = nearest;
                     continue;
@@ -348,28 +368,26 @@ impl Tree {
             // primitive may lie there.
             child = loop {
                 match stack.pop() {
-                    Some((enter, next)) if enter <= best.t => break next,
+                    Some((enter, next)) if enter <= found.hit.t => break next,
                     Some(_) => {}
-                    None => return found.then_some(best),
+                    None => return,
                 }
             };
         }
-        found.then_some(best)
+    }
+
+    /// Whether the search is over with sphere `index`.
+    #[inline]
+    fn meet_sphere(&self, ray: &Ray, index: usize, found: &mut Found) -> bool {
+        let Some(t) = self.spheres[index].intersect(ray) else {
+            return false;
+        };
+        let (prim, u, v) = (self.first_sphere + index as u32, 0.0, 0.0);
+        found.meet(Hit { t, prim, u, v }).1
     }
 
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(&*self.nodes) + size_of_val(&*self.blocks) + size_of_val(&*self.spheres)
-    }
-
-    #[inline]
-    fn sphere_hit(&self, ray: &Ray, index: usize) -> Option<Hit> {
-        let t = self.spheres[index].intersect(ray)?;
-        Some(Hit {
-            t,
-            prim: self.first_sphere + index as u32,
-            u: 0.0,
-            v: 0.0,
-        })
     }
 }

@@ -14,6 +14,7 @@
 use glam::{DVec3, Vec3A, Vec4};
 
 use super::ray::{Hit, Ray};
+use crate::engine::math::float::MACHINE_EPSILON;
 
 /// Lanes of a block.
 pub const LANES: usize = 4;
@@ -26,50 +27,89 @@ pub struct TriangleBlock {
     prims: [u32; LANES],
 }
 
-/// A ray as the triangle test wants it; `K` is the axis of the largest component of `d`.
+/// A coordinate axis. Of this type, and not of a generic number: three copies of the traversal, of
+/// which rays of all directions run all three, fill the instruction cache.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+impl Axis {
+    /// The axis of the largest component of `d`.
+    #[inline]
+    pub fn dominant(d: Vec3A) -> Self {
+        let a = d.abs();
+        if a.x >= a.y && a.x >= a.z {
+            Self::X
+        } else if a.y >= a.z {
+            Self::Y
+        } else {
+            Self::Z
+        }
+    }
+
+    /// The two that follow in cyclic order.
+    #[inline]
+    fn others(self) -> (Self, Self) {
+        match self {
+            Self::X => (Self::Y, Self::Z),
+            Self::Y => (Self::Z, Self::X),
+            Self::Z => (Self::X, Self::Y),
+        }
+    }
+}
+
+/// A ray as the triangle test wants it.
 #[derive(Clone, Copy, Debug)]
-pub struct ShearedRay<const K: usize> {
+pub struct ShearedRay {
+    /// The two axes after that of the largest component of the direction, and that.
+    axes: [Axis; 3],
+    /// Of the origin, by `axes`.
     origin: [Vec4; 3],
     shear_x: Vec4,
     shear_y: Vec4,
+    /// −1 or 1, as the largest component of the direction is.
+    sign: Vec4,
+    /// The size of that component.
+    dk: f32,
     o: DVec3,
     d: DVec3,
     inv_dk: f64,
 }
 
-/// The axis of the largest component of `d`.
-#[inline]
-pub fn dominant_axis(d: Vec3A) -> usize {
-    let a = d.abs();
-    if a.x >= a.y && a.x >= a.z {
-        0
-    } else if a.y >= a.z {
-        1
-    } else {
-        2
-    }
-}
-
-impl<const K: usize> ShearedRay<K> {
-    const X: usize = (K + 1) % 3;
-    const Y: usize = (K + 2) % 3;
-
-    /// Prepares `ray`, whose dominant axis is `K`.
+impl ShearedRay {
+    /// Prepares `ray`.
     #[inline]
     pub fn new(ray: &Ray) -> Self {
+        let (o, d) = (ray.o.to_array(), ray.d.to_array());
+        let k = Axis::dominant(ray.d);
+        let (x, y) = k.others();
+        let axes = [x, y, k];
+        let (x, y, z) = (x as usize, y as usize, k as usize);
         Self {
-            origin: [0, 1, 2].map(|axis| Vec4::splat(ray.o[axis])),
-            shear_x: Vec4::splat(ray.d[Self::X] / ray.d[K]),
-            shear_y: Vec4::splat(ray.d[Self::Y] / ray.d[K]),
+            axes,
+            origin: [Vec4::splat(o[x]), Vec4::splat(o[y]), Vec4::splat(o[z])],
+            shear_x: Vec4::splat(d[x] / d[z]),
+            shear_y: Vec4::splat(d[y] / d[z]),
+            sign: Vec4::splat(1.0_f32.copysign(d[z])),
+            dk: d[z].abs(),
             o: ray.o.as_dvec3(),
             d: ray.d.as_dvec3(),
-            inv_dk: 1.0 / f64::from(ray.d[K]),
+            inv_dk: 1.0 / f64::from(d[z]),
         }
     }
 }
 
-/// The sheared x and y of one corner of four triangles.
-type Corner = (Vec4, Vec4);
+/// One corner of four triangles: sheared x and y, and what it lies ahead along the dominant axis.
+type Corner = (Vec4, Vec4, Vec4);
+
+/// Widening of the distances that lanes are sorted out by: covers two roundings.
+const REACH: f32 = 1.0 + 4.0 * MACHINE_EPSILON;
 
 impl TriangleBlock {
     /// A block of at most four triangles.
@@ -92,20 +132,20 @@ impl TriangleBlock {
     /// Calls `found` for the triangles that `ray` meets at a distance in (0, `t_max`]. It returns
     /// the distance up to which more are wanted, and whether to stop, as does this.
     #[inline(always)]
-    pub fn intersect<const K: usize>(
+    pub fn intersect(
         &self,
-        ray: &ShearedRay<K>,
+        ray: &ShearedRay,
         mut t_max: f32,
         mut found: impl FnMut(Hit) -> (f32, bool),
     ) -> bool {
         let corner = |i: usize| -> Corner {
             let v = &self.vertices[i];
-            let z = v[K] - ray.origin[K];
-            let x_axis = ShearedRay::<K>::X;
-            let y_axis = ShearedRay::<K>::Y;
+            let [x, y, z] = ray.axes;
+            let z = v[z as usize] - ray.origin[2];
             (
-                (v[x_axis] - ray.origin[x_axis]) - ray.shear_x * z,
-                (v[y_axis] - ray.origin[y_axis]) - ray.shear_y * z,
+                (v[x as usize] - ray.origin[0]) - ray.shear_x * z,
+                (v[y as usize] - ray.origin[1]) - ray.shear_y * z,
+                z * ray.sign,
             )
         };
         let (a, b, c) = (corner(0), corner(1), corner(2));
@@ -113,7 +153,12 @@ impl TriangleBlock {
         let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
         let front = u.min(v).min(w).cmpge(Vec4::ZERO);
         let back = u.max(v).max(w).cmple(Vec4::ZERO);
-        let mut candidates = (front | back).bitmask();
+        // A line meets much that its ray does not: what lies behind, or farther than is wanted.
+        // The sign of a difference is exact.
+        let (nearest, farthest) = (a.2.min(b.2).min(c.2), a.2.max(b.2).max(c.2));
+        let ahead = farthest.cmpgt(Vec4::ZERO);
+        let near = nearest.cmple(Vec4::splat(t_max * ray.dk * REACH));
+        let mut candidates = ((front | back) & ahead & near).bitmask();
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize & (LANES - 1);
             candidates &= candidates - 1;
@@ -130,10 +175,10 @@ impl TriangleBlock {
     }
 
     /// The test of one lane in f64; `t` in (0, `t_max`].
-    #[inline]
-    fn decide<const K: usize>(
+    #[inline(never)]
+    fn decide(
         &self,
-        ray: &ShearedRay<K>,
+        ray: &ShearedRay,
         lane: usize,
         [a, b, c]: [(f64, f64); 3],
         t_max: f32,
@@ -148,7 +193,10 @@ impl TriangleBlock {
             )
         };
         let (p0, p1, p2) = (corner(0), corner(1), corner(2));
-        let [z0, z1, z2] = [p0, p1, p2].map(|p| (p[K] - ray.o[K]) * ray.inv_dk);
+        let k = ray.axes[2] as usize;
+        let o = f64::from(ray.origin[2].x);
+        let depth = |i: usize| (f64::from(self.vertices[i][k][lane]) - o) * ray.inv_dk;
+        let (z0, z1, z2) = (depth(0), depth(1), depth(2));
         let t_far = z0.max(z1).max(z2);
         let t_near = z0.min(z1).min(z2);
         if !(t_far > 0.0 && t_near <= f64::from(t_max)) {
