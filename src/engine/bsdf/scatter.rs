@@ -46,6 +46,11 @@ struct Weighted {
     lobe: Lobe,
 }
 
+#[inline]
+fn bit(letter: Letter) -> u8 {
+    1 << letter as u8
+}
+
 /// Scattering at one point.
 ///
 /// Invariant: every weight is finite, not negative and not black.
@@ -53,6 +58,8 @@ struct Weighted {
 pub struct Bsdf {
     n_g: Vec3A,
     n_s: Vec3A,
+    /// Bit mask of the letters of `lobes`.
+    letters: u8,
     lobes: ArrayVec<Weighted, MAX_LOBES>,
 }
 
@@ -63,6 +70,7 @@ impl Bsdf {
         Self {
             n_g: si.n_g,
             n_s: si.n_s,
+            letters: 0,
             lobes: ArrayVec::new_const(),
         }
     }
@@ -75,6 +83,7 @@ impl Bsdf {
     pub fn push(&mut self, weight: Rgb, lobe: Lobe) {
         debug_assert!(weight.is_finite(), "weight {weight:?} of {lobe:?}");
         if !weight.is_black() {
+            self.letters |= bit(lobe.letter());
             self.lobes.push(Weighted { weight, lobe });
         }
     }
@@ -98,21 +107,21 @@ impl Bsdf {
                 .lobes
                 .get(usize::from(i))
                 .is_some_and(|l| l.lobe.letter() == Letter::S),
-            _ => self.lobes.iter().any(|l| l.lobe.letter() == event.letter()),
+            _ => self.letters & bit(event.letter()) != 0,
         }
     }
 
     /// The events that shadow rays, connections and merging sum over.
     #[inline]
     pub fn non_delta_events(&self) -> impl Iterator<Item = Event> {
-        let exists = [Event::Diffuse, Event::Glossy].map(|e| self.has(e).then_some(e));
-        exists.into_iter().flatten()
+        let events = [Event::Diffuse, Event::Glossy];
+        events.into_iter().filter(|&event| self.has(event))
     }
 
     /// Whether anything is left to evaluate: a lobe with a density.
     #[inline]
     pub fn has_non_delta(&self) -> bool {
-        self.lobes.iter().any(|l| l.lobe.letter() != Letter::S)
+        self.letters & (bit(Letter::D) | bit(Letter::G)) != 0
     }
 
     /// The delta events.
@@ -207,16 +216,39 @@ impl Bsdf {
         if f.is_black() {
             return Evaluation::default();
         }
+        let back = view.reversed(&crossing).map_or(0.0, |(view, crossing)| {
+            self.eval_and_pdf(event, &view, &crossing, Transport::Radiance)
+                .1
+        });
         Evaluation {
             f: f * view.adjoint(&crossing, transport),
             toward,
-            back: self.pdf(event, wi, wo),
+            back,
         }
     }
 
-    /// Before the factor of the adjoint.
+    /// Before the factor of the adjoint. A lone Lambert lobe, which is most surfaces, is not chosen
+    /// among others.
     #[inline]
     fn eval_and_pdf(
+        &self,
+        event: Event,
+        view: &View,
+        crossing: &Crossing,
+        transport: Transport,
+    ) -> (Rgb, f32) {
+        if let [only] = &self.lobes[..]
+            && only.lobe == Lobe::Lambert
+            && event == Event::Diffuse
+        {
+            let (f, pdf) = only.lobe.eval(view, crossing, transport);
+            return (only.weight * f, pdf);
+        }
+        self.eval_lobes(event, view, crossing, transport)
+    }
+
+    #[inline(never)]
+    fn eval_lobes(
         &self,
         event: Event,
         view: &View,
@@ -285,13 +317,7 @@ impl Bsdf {
 
         // All lobes of the event together, whichever of them gave the direction.
         let crossing = view.crossing(wi)?;
-        let (mut f, mut pdf) = (Rgb::BLACK, 0.0);
-        for (i, l) in self.lobes_of(event) {
-            let (f_lobe, pdf_lobe) = l.lobe.eval(view, &crossing, transport);
-            f += l.weight * f_lobe;
-            pdf += shares.lobe[i] * pdf_lobe;
-        }
-        let pdf_dir = pdf / shares.total;
+        let (f, pdf_dir) = self.eval_and_pdf(event, view, &crossing, transport);
         let weight = f * (view.adjoint(&crossing, transport) / pdf_dir);
         // A density of 0 or a weight of 0: rejected by the side rules, or rounded over an edge.
         (pdf_dir > 0.0 && !weight.is_black() && weight.is_finite()).then_some(BsdfSample {

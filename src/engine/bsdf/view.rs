@@ -70,6 +70,34 @@ impl View {
         })
     }
 
+    /// Both directions exchanged; None if `wo` lies in the surface.
+    #[inline]
+    pub fn reversed(&self, crossing: &Crossing) -> Option<(Self, Crossing)> {
+        let outside = crossing.same_side == self.outside;
+        let above = (self.aligned == self.outside) == crossing.same_shading_side;
+        (self.cos > 0.0).then_some((
+            Self {
+                wo: crossing.wi,
+                n: if crossing.same_shading_side {
+                    self.n
+                } else {
+                    -self.n
+                },
+                cos: crossing.cos,
+                n_g: self.n_g,
+                cos_g: crossing.cos_g,
+                outside,
+                aligned: outside == above,
+            },
+            Crossing {
+                wi: self.wo,
+                cos: self.cos,
+                cos_g: self.cos_g,
+                ..*crossing
+            },
+        ))
+    }
+
     /// Whether light arrives above the horizon of the shading normal: diffuse lobes are dark
     /// where it does not. The direction towards the light is `wi` of a camera walk and `wo` of a
     /// light walk; the other one is free, which leaves no dark rim where a smooth mesh is seen at

@@ -57,61 +57,6 @@ pub struct Join<'a> {
     pub infinite: bool,
 }
 
-impl Join<'_> {
-    /// Whether the connection between the vertices i − 1 and i of the path has a density. The two
-    /// ends that were connected have: their events are those that were evaluated.
-    #[inline]
-    fn connects(&self, i: usize) -> bool {
-        let (s, n) = (self.light.len(), self.light.len() + self.eye.len());
-        match i {
-            0 => !self.zero_size,
-            1 if n == 2 => !self.zero_size && !self.infinite,
-            _ => {
-                let open = |v: usize| {
-                    v + 1 == s
-                        || v == s && self.meeting == Meeting::Connection
-                        || v == 0
-                        || v + 1 == n
-                        || if v < s {
-                            self.light[v].connectible
-                        } else {
-                            self.eye[n - 1 - v].connectible
-                        }
-                };
-                open(i - 1) && open(i)
-            }
-        }
-    }
-
-    /// Whether vertex `i` of the path may be one that was merged.
-    #[inline]
-    fn merges(&self, i: usize) -> bool {
-        let (s, n) = (self.light.len(), self.light.len() + self.eye.len());
-        if i == 0 || i + 1 == n {
-            false
-        } else if i + 1 == s {
-            self.diffuse[0]
-        } else if i == s && self.meeting == Meeting::Connection {
-            self.diffuse[1]
-        } else if i < s {
-            self.light[i].mergeable
-        } else {
-            self.eye[n - 1 - i].mergeable
-        }
-    }
-
-    /// What stands beside p(i) for shadow rays; they draw v₀ by a density of their own. A light
-    /// joined straight to the lens is drawn as the walks from lights start.
-    #[inline]
-    fn start_ratio(&self, i: usize) -> f64 {
-        if i == 1 && self.light.len() + self.eye.len() > 2 {
-            f64::from(self.shadow_ratio)
-        } else {
-            1.0
-        }
-    }
-}
-
 /// Density `other` of vertex `i` of a subpath whose last two are decided by the connection.
 #[inline]
 fn other(path: &[Density], ends: [f32; 2], i: usize) -> f32 {
@@ -128,51 +73,125 @@ fn other(path: &[Density], ends: [f32; 2], i: usize) -> f32 {
 /// Merging at vᵢ has the density p(i + 1) times that of vᵢ from the eye times the number of light
 /// paths that fall on the area of merging (Georgiev et al. 2012, equation 11).
 pub fn weight(join: &Join<'_>, strategies: &Strategies) -> f32 {
-    let (s, n) = (join.light.len(), join.light.len() + join.eye.len());
-    let merging = strategies.merging;
-    let connection = |i: usize, ratio: f64| {
-        if join.connects(i) && strategies.is_on(i, n - i) {
-            strategies.heuristic.share(ratio * join.start_ratio(i))
-        } else {
-            0.0
-        }
-    };
-    let merge = |i: usize, ratio: f64, eye: f32| {
-        if merging > 0.0 && join.merges(i) {
-            strategies.heuristic.share(ratio * f64::from(eye) * merging)
-        } else {
-            0.0
-        }
-    };
-    let (own, mut sum) = match join.meeting {
+    let sum = Sum { join, strategies };
+    let (own, met) = match join.meeting {
         Meeting::Connection => {
-            let own = strategies.heuristic.share(join.start_ratio(s));
+            let own = strategies
+                .heuristic
+                .share(sum.start_ratio(join.light.len()));
             (own, own)
         }
-        // The sum meets the merging itself on its way.
-        Meeting::Merging => (merge(s - 1, 1.0, join.light_other[0]), connection(s, 1.0)),
+        // The sum over the light's vertices meets the merging itself on its way.
+        Meeting::Merging => {
+            let own = sum.merging(1.0, join.light_other[0], join.diffuse[0]);
+            let ends = join.eye.last().is_none_or(|v| v.connectible);
+            (own, sum.connection(join.light.len(), 1.0, ends))
+        }
     };
+    if own == 0.0 {
+        return 0.0;
+    }
+    (own / (met + sum.toward_light() + sum.toward_lens())) as f32
+}
 
-    // Fewer and fewer vertices from the light: s − 1, s − 2 … 0.
-    let mut ratio = 1.0;
-    for (i, v) in join.light.iter().enumerate().rev() {
-        let eye = other(join.light, join.light_other, i);
-        sum += merge(i, ratio, eye);
-        ratio *= f64::from(eye) / f64::from(v.own);
-        if ratio == 0.0 {
-            break;
-        }
-        sum += connection(i, ratio);
+/// Adds up strategies.
+struct Sum<'a> {
+    join: &'a Join<'a>,
+    strategies: &'a Strategies,
+}
+
+impl Sum<'_> {
+    /// Number of vertices of the whole path.
+    #[inline]
+    fn n(&self) -> usize {
+        self.join.light.len() + self.join.eye.len()
     }
 
-    // More and more of them: s + 1, s + 2 … n − 1; the lens itself is never met.
-    let mut ratio = 1.0;
-    for (i, v) in join.eye.iter().enumerate().skip(1).rev() {
-        ratio *= f64::from(other(join.eye, join.eye_other, i)) / f64::from(v.own);
-        if ratio == 0.0 {
-            break;
+    /// What stands beside p(i) for shadow rays; they draw v₀ by a density of their own. A light
+    /// joined straight to the lens is drawn as the walks from lights start.
+    #[inline]
+    fn start_ratio(&self, i: usize) -> f64 {
+        if i == 1 && self.n() > 2 {
+            f64::from(self.join.shadow_ratio)
+        } else {
+            1.0
         }
-        sum += merge(n - 1 - i, ratio, v.own) + connection(n - i, ratio);
     }
-    if own == 0.0 { 0.0 } else { (own / sum) as f32 }
+
+    /// The share of the strategy (i, n − i), of a density `ratio` times that which sampled the
+    /// path; `open`: the events at both ends of its connection have densities.
+    #[inline]
+    fn connection(&self, i: usize, ratio: f64, open: bool) -> f64 {
+        let (join, n) = (self.join, self.n());
+        let exists = match i {
+            0 => !join.zero_size,
+            1 if n == 2 => !join.zero_size && !join.infinite,
+            _ => open,
+        };
+        if exists && self.strategies.is_on(i, n - i) {
+            self.strategies.heuristic.share(ratio * self.start_ratio(i))
+        } else {
+            0.0
+        }
+    }
+
+    /// The share of merging at a vertex that walks from the eye draw with the density `eye`.
+    #[inline]
+    fn merging(&self, ratio: f64, eye: f32, diffuse: bool) -> f64 {
+        if diffuse && self.strategies.merging > 0.0 {
+            let density = ratio * f64::from(eye) * self.strategies.merging;
+            self.strategies.heuristic.share(density)
+        } else {
+            0.0
+        }
+    }
+
+    /// Strategies of fewer and fewer vertices from the light: s − 1, s − 2 … 0. The events at the
+    /// ends that were connected are those that were evaluated, the others those that were drawn.
+    #[inline]
+    fn toward_light(&self) -> f64 {
+        let join = self.join;
+        let (mut sum, mut ratio, mut open) = (0.0, 1.0, true);
+        let mut diffuse = join.diffuse[0];
+        for (i, v) in join.light.iter().enumerate().rev() {
+            let eye = other(join.light, join.light_other, i);
+            // v₀ is never merged.
+            sum += self.merging(ratio, eye, diffuse && i > 0);
+            ratio *= f64::from(eye) / f64::from(v.own);
+            if ratio == 0.0 {
+                break;
+            }
+            let before = i.checked_sub(1).map(|before| join.light[before]);
+            let next_open = before.is_none_or(|v| v.connectible);
+            sum += self.connection(i, ratio, open && next_open);
+            open = next_open;
+            diffuse = before.is_some_and(|v| v.mergeable);
+        }
+        sum
+    }
+
+    /// Of more and more of them: s + 1, s + 2 … n − 1; the lens itself is never met.
+    #[inline]
+    fn toward_lens(&self) -> f64 {
+        let (join, n) = (self.join, self.n());
+        let (mut sum, mut ratio) = (0.0, 1.0);
+        let (mut open, mut diffuse) = match join.meeting {
+            Meeting::Connection => (true, join.diffuse[1]),
+            Meeting::Merging => join
+                .eye
+                .last()
+                .map_or((true, false), |v| (v.connectible, v.mergeable)),
+        };
+        for (i, v) in join.eye.iter().enumerate().skip(1).rev() {
+            ratio *= f64::from(other(join.eye, join.eye_other, i)) / f64::from(v.own);
+            if ratio == 0.0 {
+                break;
+            }
+            let next = &join.eye[i - 1];
+            sum += self.merging(ratio, v.own, diffuse && i + 1 < n)
+                + self.connection(n - i, ratio, open && next.connectible);
+            (open, diffuse) = (next.connectible, next.mergeable);
+        }
+        sum
+    }
 }
