@@ -75,6 +75,13 @@ impl Bsdf {
         }
     }
 
+    /// Makes it a black surface at `si`, in the same place of memory.
+    #[inline]
+    pub fn reset(&mut self, si: &SurfaceInteraction) {
+        (self.n_g, self.n_s, self.letters) = (si.n_g, si.n_s, 0);
+        self.lobes.clear();
+    }
+
     /// Adds a lobe; a black one is dropped.
     ///
     /// # Panics

@@ -129,6 +129,13 @@ impl Material {
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction) -> Bsdf {
         let mut bsdf = Bsdf::new(si);
+        self.add_lobes(si, &mut bsdf);
+        bsdf
+    }
+
+    /// Adds its lobes at `si` to `bsdf`.
+    #[inline]
+    pub fn add_lobes(&self, si: &SurfaceInteraction, bsdf: &mut Bsdf) {
         for (weight, lobe) in &self.lobes {
             let color = match weight {
                 Weight::Constant(c) => *c,
@@ -140,7 +147,6 @@ impl Material {
             };
             bsdf.push(color, *lobe);
         }
-        bsdf
     }
 
     /// The probability in [0, 1] that a ray meets the surface at `si` at all.

@@ -123,6 +123,12 @@ impl Scene {
         0.0
     }
 
+    /// Adds the lobes at `si` to `bsdf`.
+    #[inline]
+    pub fn add_lobes(&self, si: &SurfaceInteraction, bsdf: &mut Bsdf) {
+        self.materials[si.material as usize].add_lobes(si, bsdf);
+    }
+
     /// The scattering at `si`.
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction) -> Bsdf {

@@ -18,6 +18,7 @@ use crate::engine::path::ClassId;
 
 /// A vertex of a light walk where some event is diffuse.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub struct Photon {
     /// Where.
     pub p: Vec3A,
@@ -116,7 +117,8 @@ impl PhotonGrid {
     pub fn new(lists: &[PhotonList], radius: f32, paths: u64) -> Self {
         let mut list = PhotonList::default();
         lists.iter().for_each(|l| list.append(l));
-        let count = list.photons.len().next_power_of_two().max(1);
+        // Twice as many as photons: most of a ball's cells are empty, and found so.
+        let count = (2 * list.photons.len()).next_power_of_two();
         let cell = 2.0 * radius;
         let hashes: Vec<u32> = list
             .photons
@@ -164,15 +166,35 @@ impl PhotonGrid {
     pub fn within(&self, p: Vec3A, mut visit: impl FnMut(&Photon)) {
         let (cell, r2) = (2.0 * self.radius, self.radius * self.radius);
         let count = self.buckets.len() - 1;
-        // A ball of the radius meets two cells a side at most.
+        // A ball of the radius meets two cells a side at most, of which the two along x are
+        // neighbours here, too.
         let low = cell_of(p - Vec3A::splat(self.radius), cell);
-        for i in 0..8 {
-            let place = low + IVec3::new(i & 1, i >> 1 & 1, i >> 2);
-            let b = bucket(place, count) as usize;
-            let (first, end) = (self.buckets[b] as usize, self.buckets[b + 1] as usize);
-            for photon in &self.list.photons[first..end] {
-                // Cells of the same bucket are told apart, or a photon would count twice.
-                if photon.p.distance_squared(p) < r2 && cell_of(photon.p, cell) == place {
+        for i in 0..4 {
+            let row = low.wrapping_add(IVec3::new(0, i & 1, i >> 1));
+            let b = bucket(row, count) as usize;
+            let (first, end) = (self.buckets[b], self.buckets[(b + 2).min(count)]);
+            self.visit((first, end), row, p, r2, &mut visit);
+            if b + 2 > count {
+                self.visit((0, self.buckets[1]), row, p, r2, &mut visit);
+            }
+        }
+    }
+
+    /// Visits those of the photons `first` to `end` that lie near `p` and in the cell `row` or the
+    /// next one along x: cells of the same bucket are told apart, or a photon would count twice.
+    #[inline(always)]
+    fn visit(
+        &self,
+        (first, end): (u32, u32),
+        row: IVec3,
+        p: Vec3A,
+        r2: f32,
+        visit: &mut impl FnMut(&Photon),
+    ) {
+        for photon in &self.list.photons[first as usize..end as usize] {
+            if photon.p.distance_squared(p) < r2 {
+                let cell = cell_of(photon.p, 2.0 * self.radius);
+                if (cell.y, cell.z) == (row.y, row.z) && cell.x.wrapping_sub(row.x) as u32 <= 1 {
                     visit(photon);
                 }
             }
@@ -207,9 +229,10 @@ fn cell_of(p: Vec3A, cell: f32) -> IVec3 {
     IVec3::new(c.x as i32, c.y as i32, c.z as i32)
 }
 
+/// Neighbours along x lie in neighbouring buckets.
 fn bucket(cell: IVec3, count: usize) -> u32 {
-    let xy = u64::from(cell.x as u32) << 32 | u64::from(cell.y as u32);
-    (combine(xy, u64::from(cell.z as u32)) as usize & (count - 1)) as u32
+    let row = combine(u64::from(cell.y as u32), u64::from(cell.z as u32)) as u32;
+    row.wrapping_add(cell.x as u32) & (count - 1) as u32
 }
 
 #[cfg(test)]

@@ -5,13 +5,13 @@ use glam::Vec3A;
 use super::ends::{LightEnd, area_density, areas};
 use super::vertex::Vertex;
 use super::weight::Density;
-use crate::engine::bsdf::{Bsdf, BsdfSample, Transport};
+use crate::engine::bsdf::{BsdfSample, Transport};
 use crate::engine::event::Event;
 use crate::engine::geometry::{Departure, Ray, SurfaceInteraction};
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::EmissionSample;
 use crate::engine::math::Rgb;
-use crate::engine::media::{Draws, Inside};
+use crate::engine::media::{Draws, Inside, Phase};
 use crate::engine::path::ClassId;
 use crate::engine::plan::RenderPlan;
 use crate::engine::sampling::{MAX_SURVIVAL, Sampler};
@@ -32,8 +32,9 @@ const MAX_EVENTS: usize = 10_000_000;
 /// A subpath. Vertex 0, the lens or the light, has densities only.
 #[derive(Clone, Debug, Default)]
 pub struct Subpath {
+    /// From vertex 1 on. Those of longer walks before are kept behind them, to be filled again.
     vertices: Vec<Vertex>,
-    /// Of vertex 0 and of `vertices`.
+    /// Of vertex 0 and of those in use of `vertices`.
     densities: Vec<Density>,
     /// Light of media that an eye walk met on its way.
     pub(super) glow: Vec<(ClassId, Rgb)>,
@@ -71,7 +72,6 @@ pub struct LightStart {
 
 impl Subpath {
     fn restart(&mut self, own: f32) {
-        self.vertices.clear();
         self.densities.clear();
         self.glow.clear();
         self.densities.push(Density {
@@ -91,6 +91,46 @@ impl Subpath {
     /// Never true once a walk has begun: its end is the first vertex.
     pub fn is_empty(&self) -> bool {
         self.densities.is_empty()
+    }
+
+    /// Number of vertices after the end.
+    #[inline]
+    fn events(&self) -> usize {
+        self.densities.len() - 1
+    }
+
+    /// The last vertex after the end.
+    #[inline]
+    fn last(&self) -> Option<&Vertex> {
+        self.vertices[..self.events()].last()
+    }
+
+    /// Adds a vertex that the walk draws with the density `own`, to be filled.
+    #[inline]
+    fn add(&mut self, own: f32) -> &mut Vertex {
+        let events = self.events();
+        self.densities.push(Density {
+            own,
+            other: 0.0,
+            connectible: true,
+            mergeable: false,
+        });
+        if self.vertices.len() == events {
+            self.vertices.push(Vertex::blank());
+        }
+        &mut self.vertices[events]
+    }
+
+    /// Keeps what the event at the last vertex decides: whether connections may end there, and the
+    /// density, in 1/sr, with which the other walk would draw the direction back from there.
+    #[inline]
+    fn go_on(&mut self, event: Event, backward: f32) {
+        let last = self.events();
+        let vertex = &mut self.vertices[last - 1];
+        vertex.event = Some(event);
+        self.densities[last].connectible = !event.is_delta();
+        self.densities[last].mergeable = event == Event::Diffuse;
+        self.densities[last - 1].other = backward * vertex.back;
     }
 
     /// Vertex `i`, from 1.
@@ -125,6 +165,15 @@ pub(super) struct Flight {
     pub(super) kept: Rgb,
     /// What the ray's origin is within.
     pub(super) inside: Inside,
+}
+
+/// Where a flight scatters.
+struct Met {
+    si: SurfaceInteraction,
+    /// In a medium.
+    phase: Option<Phase>,
+    /// See [`Vertex`].
+    key: u64,
 }
 
 /// Makes subpaths.
@@ -203,7 +252,8 @@ impl Walker<'_> {
             let origin = Origin::Light(end, le);
             self.walk(origin, flight, FIRST_LIGHT_VERTEX, sampler, path, stats);
         }
-        if let Some(first) = path.vertices.first() {
+        if path.len() > 1 {
+            let first = path.vertex(1);
             let pdf_li = light.pdf_li(first.si.p, first.si.wo, self.point_of(&start).as_ref());
             start.shadow_ratio = end.shadow_ratio(pdf_li, le, first.si.p);
         }
@@ -243,84 +293,18 @@ impl Walker<'_> {
         };
         loop {
             // Dimensions are reserved per vertex: what one vertex draws shifts no later one.
-            let events = path.vertices.len();
+            let events = path.events();
             let first = first_dimension + vertex_dimensions(self.cx.plan) * events as u32;
-            // The next surface, or the sky.
             match transport {
                 Transport::Radiance => stats.ray_at(events as u32),
                 Transport::Importance => stats.light_ray_at(events as u32),
             }
-            let left = path
-                .vertices
-                .last()
-                .map_or(Departure::NOWHERE, |last| last.si.departure(flight.ray.d));
-            let (si, phase, key) = if self.cx.plan.features.media {
-                let (class, before) = (flight.class, flight.throughput);
-                let fly = self.fly(&mut flight, first, sampler, stats);
-                if !fly.emitted.is_black() && transport == Transport::Radiance {
-                    path.glow.push((class, before * fly.emitted));
-                }
-                match fly.met {
-                    Some((si, phase)) => (si, phase, fly.key),
-                    None => {
-                        stats.count_ray_fault(self.cx.scene.ray_fault(left, None));
-                        return Some(flight);
-                    }
-                }
-            } else {
-                let opacity_number = || {
-                    sampler.seek(first + 7);
-                    sampler.next_1d()
-                };
-                match self.cx.scene.intersect(&flight.ray, opacity_number) {
-                    Some(si) => (si, None, 0),
-                    None => {
-                        stats.count_ray_fault(self.cx.scene.ray_fault(left, None));
-                        return Some(flight);
-                    }
-                }
+            let Some(met) = self.meet(&mut flight, transport, first, sampler, path, stats) else {
+                return Some(flight);
             };
-            stats.count_ray_fault(self.cx.scene.ray_fault(left, Some(&si)));
-            let (own, back) = match (path.vertices.last(), origin) {
-                (Some(last), _) => {
-                    let (back, ahead) = areas(&last.si, &si);
-                    (flight.pdf_dir * ahead, back)
-                }
-                (None, Origin::Lens(p)) => (area_density(flight.pdf_dir, p, &si), 0.0),
-                (None, Origin::Light(end, le)) => {
-                    let d = flight.ray.d;
-                    (end.depart(le, d, &si), end.arrive(1.0, si.p))
-                }
-            };
-            if own <= 0.0 {
-                return None; // seen exactly edge-on: nothing scatters there
-            }
-            path.densities.push(Density {
-                own,
-                other: 0.0,
-                connectible: true,
-                mergeable: false,
-            });
-            path.vertices.push(Vertex {
-                bsdf: match phase {
-                    Some(_) => Bsdf::new(&si),
-                    None => self.cx.scene.bsdf(&si),
-                },
-                si,
-                phase,
-                inside: flight.inside,
-                key,
-                back,
-                throughput: flight.throughput,
-                class: flight.class,
-                event: None,
-            });
-            if self
-                .cx
-                .plan
-                .max_depth
-                .is_some_and(|max| events >= max as usize)
-            {
+            self.arrive(origin, &flight, &met, path)?;
+            let max = self.cx.plan.max_depth;
+            if max.is_some_and(|max| events >= max as usize) {
                 return None;
             }
             if events >= MAX_EVENTS {
@@ -329,8 +313,8 @@ impl Walker<'_> {
             }
 
             // One event, drawn by the roulette between the lobes.
-            let vertex = path.vertices.last()?;
-            if vertex.bsdf.is_empty() && phase.is_none() {
+            let vertex = path.last()?;
+            if vertex.bsdf.is_empty() && vertex.phase.is_none() {
                 return None;
             }
             sampler.seek(first);
@@ -341,8 +325,8 @@ impl Walker<'_> {
                 return None;
             };
             let backward = backward_pdf(vertex, &sample);
-            self.advance(&mut flight, &si, &sample, transport)?;
-            Self::keep_densities(backward, &sample, path);
+            self.advance(&mut flight, &met.si, &sample, transport)?;
+            path.go_on(sample.event, backward);
 
             // Russian roulette: survival divides the throughput and enters no weight.
             if events + 1 > self.roulette {
@@ -356,6 +340,72 @@ impl Walker<'_> {
                 return None;
             }
         }
+    }
+
+    /// The next place where the flight scatters; None if it leaves the scene.
+    #[inline]
+    fn meet<S: Sampler>(
+        &self,
+        flight: &mut Flight,
+        transport: Transport,
+        first: u32,
+        sampler: &mut S,
+        path: &mut Subpath,
+        stats: &mut RenderStats,
+    ) -> Option<Met> {
+        let left = match path.last() {
+            Some(last) => last.si.departure(flight.ray.d),
+            None => Departure::NOWHERE,
+        };
+        let met = if self.cx.plan.features.media {
+            let (class, before) = (flight.class, flight.throughput);
+            let fly = self.fly(flight, first, sampler, stats);
+            if !fly.emitted.is_black() && transport == Transport::Radiance {
+                path.glow.push((class, before * fly.emitted));
+            }
+            let key = fly.key;
+            fly.met.map(|(si, phase)| Met { si, phase, key })
+        } else {
+            let opacity_number = || {
+                sampler.seek(first + 7);
+                sampler.next_1d()
+            };
+            let si = self.cx.scene.intersect(&flight.ray, opacity_number);
+            let (phase, key) = (None, 0);
+            si.map(|si| Met { si, phase, key })
+        };
+        let si = met.as_ref().map(|met| &met.si);
+        stats.count_ray_fault(self.cx.scene.ray_fault(left, si));
+        met
+    }
+
+    /// Adds the vertex `met`; None if it is seen exactly edge-on: nothing scatters there.
+    #[inline]
+    fn arrive(&self, origin: Origin, flight: &Flight, met: &Met, path: &mut Subpath) -> Option<()> {
+        let si = &met.si;
+        let (own, back) = match (path.last(), origin) {
+            (Some(last), _) => {
+                let (back, ahead) = areas(&last.si, si);
+                (flight.pdf_dir * ahead, back)
+            }
+            (None, Origin::Lens(p)) => (area_density(flight.pdf_dir, p, si), 0.0),
+            (None, Origin::Light(end, le)) => {
+                (end.depart(le, flight.ray.d, si), end.arrive(1.0, si.p))
+            }
+        };
+        if own <= 0.0 {
+            return None;
+        }
+        let vertex = path.add(own);
+        vertex.bsdf.reset(si);
+        if met.phase.is_none() {
+            self.cx.scene.add_lobes(si, &mut vertex.bsdf);
+        }
+        vertex.si = *si;
+        (vertex.phase, vertex.key, vertex.back) = (met.phase, met.key, back);
+        (vertex.inside, vertex.class, vertex.event) = (flight.inside, flight.class, None);
+        vertex.throughput = flight.throughput;
+        Some(())
     }
 
     /// Scatters the flight; None if no layer that is asked for has words of its new class.
@@ -386,17 +436,6 @@ impl Walker<'_> {
             }
         };
         (!pointless).then_some(())
-    }
-
-    /// Keeps what the event at the last vertex decides: whether connections may end there, and the
-    /// density with which the other walk would draw the vertex before it.
-    fn keep_densities(backward: f32, sample: &BsdfSample, path: &mut Subpath) {
-        let last = path.vertices.len();
-        let vertex = &mut path.vertices[last - 1];
-        vertex.event = Some(sample.event);
-        path.densities[last].connectible = !sample.event.is_delta();
-        path.densities[last].mergeable = sample.event == Event::Diffuse;
-        path.densities[last - 1].other = backward * vertex.back;
     }
 }
 

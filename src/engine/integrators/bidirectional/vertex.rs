@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3A};
 
 use crate::engine::bsdf::{Bsdf, BsdfSample, Evaluation, Transport};
 use crate::engine::event::Event;
-use crate::engine::geometry::SurfaceInteraction;
+use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::math::Rgb;
 use crate::engine::media::{Inside, Phase};
 use crate::engine::path::ClassId;
@@ -36,6 +36,22 @@ pub struct Vertex {
 }
 
 impl Vertex {
+    /// Nowhere, to be filled.
+    pub(super) fn blank() -> Self {
+        let si = SurfaceInteraction::in_volume(&Ray::new(Vec3A::ZERO, Vec3A::X), 0.0);
+        Self {
+            bsdf: Bsdf::new(&si),
+            si,
+            phase: None,
+            inside: Inside::default(),
+            key: 0,
+            back: 0.0,
+            throughput: Rgb::BLACK,
+            class: ClassId::EMPTY,
+            event: None,
+        }
+    }
+
     /// The events that can be evaluated there.
     #[inline]
     pub fn non_delta_events(&self) -> impl Iterator<Item = Event> {
