@@ -160,6 +160,10 @@ impl Bsdf {
         transport: Transport,
     ) -> Option<BsdfSample> {
         let view = View::new(self.n_g, self.n_s, wo)?;
+        if let Some(only) = self.lone_lambert() {
+            let wi = only.lobe.sample(&view, u_event, u)?;
+            return self.sampled(&view, Event::Diffuse, only, wi, transport);
+        }
         let shares = self.shares(&view);
         let (event, u_lobe) = shares.pick_event(u_event)?;
         self.sample_from(&view, &shares, event, u_lobe, u, transport)
@@ -234,8 +238,16 @@ impl Bsdf {
         }
     }
 
-    /// Before the factor of the adjoint. A lone Lambert lobe, which is most surfaces, is not chosen
-    /// among others.
+    /// The lobe of most surfaces, where it is the only one: nothing is to be chosen there.
+    #[inline]
+    fn lone_lambert(&self) -> Option<&Weighted> {
+        match &self.lobes[..] {
+            [only] if only.lobe == Lobe::Lambert => Some(only),
+            _ => None,
+        }
+    }
+
+    /// Before the factor of the adjoint.
     #[inline]
     fn eval_and_pdf(
         &self,
@@ -244,8 +256,7 @@ impl Bsdf {
         crossing: &Crossing,
         transport: Transport,
     ) -> (Rgb, f32) {
-        if let [only] = &self.lobes[..]
-            && only.lobe == Lobe::Lambert
+        if let Some(only) = self.lone_lambert()
             && event == Event::Diffuse
         {
             let (f, pdf) = only.lobe.eval(view, crossing, transport);
@@ -321,8 +332,19 @@ impl Bsdf {
         let lobes = self.lobes_of(event).map(|(i, _)| i);
         let (i, u_lobe) = shares.pick_lobe(lobes, shares.of(event), u_lobe)?;
         let wi = self.lobes[i].lobe.sample(view, u_lobe, u)?;
+        self.sampled(view, event, &self.lobes[i], wi, transport)
+    }
 
-        // All lobes of the event together, whichever of them gave the direction.
+    /// What became of `wi`, which the lobe `from` gave: all lobes of the event together.
+    #[inline]
+    fn sampled(
+        &self,
+        view: &View,
+        event: Event,
+        from: &Weighted,
+        wi: Vec3A,
+        transport: Transport,
+    ) -> Option<BsdfSample> {
         let crossing = view.crossing(wi)?;
         let (f, pdf_dir) = self.eval_and_pdf(event, view, &crossing, transport);
         let weight = f * (view.adjoint(&crossing, transport) / pdf_dir);
@@ -335,7 +357,7 @@ impl Bsdf {
             eta: if crossing.same_side {
                 1.0
             } else {
-                self.lobes[i].lobe.eta(view)
+                from.lobe.eta(view)
             },
         })
     }

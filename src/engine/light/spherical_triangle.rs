@@ -31,12 +31,18 @@ impl SphericalTriangle {
     /// The triangle of `corners` as seen from `p`; `normal` is (v1 − v0) × (v2 − v0). `None` if
     /// `p` is not on the side `normal` points to, or sees nothing that `f32` can hold.
     pub fn new(corners: &[Vec3A; 3], normal: Vec3A, p: Vec3A) -> Option<Self> {
-        let to = corners.map(|v| v - p);
-        let distance = to.map(Vec3A::length);
-        let nearest = (0..3).min_by(|&i, &j| distance[i].total_cmp(&distance[j]))?;
+        let to = [corners[0] - p, corners[1] - p, corners[2] - p];
+        let distance = [to[0].length(), to[1].length(), to[2].length()];
         // Six times the volume of the tetrahedron; positive in front. Taken from the nearest
         // corner, where the height above the plane is rounded least.
-        let volume = -to[nearest].dot(normal);
+        let nearest = if distance[0] <= distance[1].min(distance[2]) {
+            to[0]
+        } else if distance[1] <= distance[2] {
+            to[1]
+        } else {
+            to[2]
+        };
+        let volume = -nearest.dot(normal);
         let unit = [
             to[0] / distance[0],
             to[1] / distance[1],
@@ -66,7 +72,7 @@ impl SphericalTriangle {
         };
         Some(Self {
             order,
-            distance: order.map(|i| distance[i]),
+            distance: [distance[order[0]], distance[order[1]], distance[order[2]]],
             g: [
                 pair(order[0], order[1]),
                 pair(order[0], order[2]),

@@ -20,6 +20,7 @@ use crate::engine::light::LightSample;
 use crate::engine::math::Rgb;
 use crate::engine::math::hash::combine;
 use crate::engine::path::ClassId;
+use crate::engine::scene::Scene;
 
 /// A strategy: number of vertices from the light and from the lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -204,18 +205,14 @@ impl<K: Sink> Connector<'_, K> {
             if z.f.is_black() {
                 continue;
             }
-            let from = (self.leaving(v, wi), combine(v.key, 1));
-            let visible = self.visible(
-                &mut visibility,
-                || from,
-                || {
-                    if sample.distance.is_finite() {
-                        v.si.spawn_ray_to(sample.target)
-                    } else {
-                        v.si.spawn_ray(wi)
-                    }
-                },
-            );
+            let from = |scene: &Scene| (v.leaving(scene, wi), combine(v.key, 1));
+            let visible = self.visible(&mut visibility, from, || {
+                if sample.distance.is_finite() {
+                    v.si.spawn_ray_to(sample.target)
+                } else {
+                    v.si.spawn_ray(wi)
+                }
+            });
             if visible.is_black() {
                 return;
             }
@@ -280,8 +277,8 @@ impl<K: Sink> Connector<'_, K> {
                     continue;
                 }
                 let ray = || z.si.spawn_ray_to_surface(&y.si);
-                let from = (self.leaving(z, wi), combine(z.key, y.key));
-                let visible = self.visible(&mut visibility, || from, ray);
+                let from = |scene: &Scene| (z.leaving(scene, wi), combine(z.key, y.key));
+                let visible = self.visible(&mut visibility, from, ray);
                 if visible.is_black() {
                     return;
                 }
@@ -368,9 +365,9 @@ impl<K: Sink> Connector<'_, K> {
             if end.f.is_black() {
                 continue;
             }
-            let from = (self.leaving(y, sample.wi), combine(y.key, 2));
+            let from = |scene: &Scene| (y.leaving(scene, sample.wi), combine(y.key, 2));
             let ray = || y.si.spawn_ray_to(sample.target);
-            let visible = self.visible(&mut visibility, || from, ray);
+            let visible = self.visible(&mut visibility, from, ray);
             if visible.is_black() {
                 return;
             }
@@ -407,9 +404,9 @@ impl<K: Sink> Connector<'_, K> {
             return;
         }
         let origin = offset_origin(emission.p, emission.p_error, n, sample.wi);
-        let from = (start.inside, start.key);
+        let from = |_: &Scene| (start.inside, start.key);
         let ray = || Ray::between(origin, sample.target);
-        let visible = self.visible(&mut None, || from, ray);
+        let visible = self.visible(&mut None, from, ray);
         let flux = emission.radiance * (cos / (start.pmf * emission.pdf_pos));
         let value = flux * (sample.importance / sample.pdf_dir) * visible;
         if value.is_black() {

@@ -8,6 +8,7 @@ use crate::engine::geometry::{Ray, SurfaceInteraction};
 use crate::engine::math::Rgb;
 use crate::engine::media::{Inside, Phase};
 use crate::engine::path::ClassId;
+use crate::engine::scene::Scene;
 
 /// A point of a subpath, on a surface or in a medium.
 #[derive(Clone, Debug)]
@@ -86,6 +87,12 @@ impl Vertex {
             Some(phase) => phase.pdf(wo, wi),
             None => self.bsdf.pdf(event, wo, wi),
         }
+    }
+
+    /// What a ray is within that leaves in the direction `d`.
+    #[inline]
+    pub(super) fn leaving(&self, scene: &Scene, d: Vec3A) -> Inside {
+        scene.beyond(&self.inside, &self.si, d)
     }
 
     /// Draws an event and a direction.

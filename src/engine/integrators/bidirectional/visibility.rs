@@ -1,13 +1,11 @@
 //! What light gets through between two vertices, and what is met on the way.
 
-use glam::Vec3A;
-
 use super::connect::{Connector, Sink, Technique};
 use super::subpath::Subpath;
-use super::vertex::Vertex;
 use crate::engine::geometry::Ray;
 use crate::engine::math::Rgb;
 use crate::engine::media::{Draws, Inside};
+use crate::engine::scene::Scene;
 
 impl<K: Sink> Connector<'_, K> {
     /// The share of light that gets through; `known` holds the answer once it is asked for. In
@@ -16,7 +14,7 @@ impl<K: Sink> Connector<'_, K> {
     pub(super) fn visible(
         &mut self,
         known: &mut Option<Rgb>,
-        from: impl FnOnce() -> (Inside, u64),
+        from: impl FnOnce(&Scene) -> (Inside, u64),
         ray: impl FnOnce() -> Ray,
     ) -> Rgb {
         *known.get_or_insert_with(|| {
@@ -24,7 +22,7 @@ impl<K: Sink> Connector<'_, K> {
                 self.stats.rays += 1;
                 return Rgb::splat(self.cx.scene.transmittance_along(ray()));
             }
-            let (inside, key) = from();
+            let (inside, key) = from(self.cx.scene);
             let mut draws = Draws::hashed(key);
             let visible = self
                 .cx
@@ -34,11 +32,6 @@ impl<K: Sink> Connector<'_, K> {
             self.stats.exceeded_majorants += draws.exceeded;
             visible
         })
-    }
-
-    /// What a ray is within that leaves `v` in the direction `d`.
-    pub(super) fn leaving(&self, v: &Vertex, d: Vec3A) -> Inside {
-        self.cx.scene.beyond(&v.inside, &v.si, d)
     }
 
     /// Light of media that the eye walk met on its way. No other strategy finds it.
