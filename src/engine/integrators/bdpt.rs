@@ -10,10 +10,9 @@ use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
 use super::bidirectional::{
-    Connector, FIRST_LIGHT_VERTEX, Heuristic, LightStart, PhotonGrid, Sink, Strategies, Subpath,
-    Technique, Walker, lost_words, vertex_dimensions,
+    Bidirectional, Heuristic, PhotonGrid, Sink, Strategies, Technique, Workspace, lost_words,
 };
-use super::tiled::{CAMERA_DIMENSIONS, SamplerKind};
+use super::tiled::SamplerKind;
 use super::{
     Cancelled, Entry, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, Recording,
     RenderStats, ReplayError, SampleId,
@@ -23,7 +22,6 @@ use crate::engine::film::{Film, PassBuffer, SampleRadiance, SplatBuffer, SplatLi
 use crate::engine::geometry::Ray;
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
-use crate::engine::plan::RenderPlan;
 use crate::engine::sampling::{IndependentSampler, Sampler, SobolSampler, Stream};
 use crate::engine::scene::features::SceneFeatures;
 
@@ -113,145 +111,15 @@ pub(super) fn unconnectable(features: &SceneFeatures) -> Option<Missing> {
     })
 }
 
-/// The estimator of one sample.
-pub(super) struct Bidirectional {
-    strategies: Strategies,
-    roulette: usize,
-}
-
-/// Memory of one sample, used again for the next.
-#[derive(Default)]
-pub(super) struct Workspace {
-    eye: Subpath,
-    light: Subpath,
-    /// Where the light walk began, if there is one.
-    start: Option<LightStart>,
-    densities: Vec<super::bidirectional::Density>,
-}
-
-impl Bidirectional {
-    pub(super) fn new(params: &Params) -> Self {
-        let heuristic = match params.choice("heuristic") {
-            "balance" => Heuristic::Balance,
-            _ => Heuristic::Power,
-        };
-        let strategies = params.strategies("strategies").with(heuristic);
-        let roulette = usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX);
-        Self::with(strategies, roulette)
-    }
-
-    /// Only the strategies that are on; walks may end by roulette after `roulette` events.
-    pub(super) fn with(strategies: Strategies, roulette: usize) -> Self {
-        Self {
-            strategies,
-            roulette,
-        }
-    }
-
-    /// Takes one sample at the film position `film`: two walks and all their connections, and
-    /// mergings with the photons of `grid`. The eye sampler stands behind film and lens.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "what one sample needs and where it goes"
-    )]
-    pub(super) fn sample<S: Sampler>(
-        &self,
-        cx: &Pass<'_>,
-        (film, lens): (Vec2, Vec2),
-        samplers: (&mut S, &mut S),
-        grid: Option<&PhotonGrid>,
-        work: &mut Workspace,
-        sink: &mut impl Sink,
-        stats: &mut RenderStats,
-    ) {
-        let walker = Walker {
-            cx,
-            roulette: self.roulette,
-        };
-        let (eye_sampler, light_sampler) = samplers;
-        let (eye, light) = (&mut work.eye, &mut work.light);
-        let ray = cx.camera.generate_ray(film, lens);
-        sink.begin(film, &ray);
-        let escape = walker.from_lens(ray, CAMERA_DIMENSIONS, eye_sampler, eye, stats);
-        work.start = if cx.plan.shadow_rays && self.strategies.walk_from_lights() {
-            walker.from_light(light_sampler, light, stats)
-        } else {
-            None
-        };
-        let mut connector = Connector {
-            cx,
-            strategies: &self.strategies,
-            sink,
-            stats,
-        };
-
-        // s = 0: light that the eye walk met by itself.
-        connector.glow(eye);
-        if let Some(escape) = escape {
-            connector.escape(eye, &escape, &mut work.densities);
-        }
-        for t in 2..=eye.len() {
-            connector.hit(eye, t);
-        }
-        if !cx.plan.shadow_rays {
-            return;
-        }
-
-        // s = 1: shadow rays.
-        for t in 2..=eye.len() {
-            let vertex = eye.vertex(t - 1);
-            if !vertex.has_non_delta() {
-                continue;
-            }
-            let stride = vertex_dimensions(cx.plan);
-            eye_sampler.seek(CAMERA_DIMENSIONS + stride * (t as u32 - 2) + 4);
-            if let Some((id, pmf, sample)) = cx.scene.lights.sample_li(vertex.si.p, eye_sampler) {
-                connector.shadow(eye, t, id, pmf, &sample);
-            }
-        }
-
-        // Merging.
-        if let Some(grid) = grid {
-            for t in 2..=eye.len() {
-                connector.merge(grid, eye, t);
-            }
-        }
-
-        // t = 1: the light path ends on the lens.
-        let Some(start) = &work.start else { return };
-        let lens = eye.densities(1)[0];
-        for s in 1..=light.len() {
-            let u = if cx.plan.lens {
-                light_sampler.seek(lens_dimension(cx.plan, s));
-                light_sampler.next_2d()
-            } else {
-                Vec2::ZERO
-            };
-            if s == 1 {
-                connector.join_light(light, start, &lens, u);
-            } else {
-                connector.join_lens((light, start), s, &lens, u);
-            }
-        }
-
-        // All others.
-        for t in 2..=eye.len() {
-            if !eye.vertex(t - 1).has_non_delta() {
-                continue;
-            }
-            for s in 2..=light.len() {
-                connector.connect((light, start), s, eye, t);
-            }
-        }
-    }
-}
-
-/// Where the light sampler keeps the point of the lens for the vertex s − 1 of a light walk.
-pub(super) fn lens_dimension(plan: &RenderPlan, s: usize) -> u32 {
-    match s {
-        1 => 6,
-        _ => FIRST_LIGHT_VERTEX + vertex_dimensions(plan) * (s as u32 - 2) + 4,
-    }
+/// The estimator that `params` ask for.
+fn estimator(params: &Params) -> Bidirectional {
+    let heuristic = match params.choice("heuristic") {
+        "balance" => Heuristic::Balance,
+        _ => Heuristic::Power,
+    };
+    let strategies = params.strategies("strategies").with(heuristic);
+    let roulette = usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX);
+    Bidirectional::with(strategies, roulette)
 }
 
 /// The integrator.
@@ -314,7 +182,7 @@ impl Sink for Weighted<'_, '_> {
 impl Bdpt {
     pub(super) fn new(params: &Params) -> Self {
         Self {
-            estimator: Bidirectional::new(params),
+            estimator: estimator(params),
             picture: params.strategies("picture"),
             sampler: SamplerKind::of(params),
             grid: None,

@@ -8,7 +8,7 @@
 use glam::Vec2;
 use rayon::prelude::*;
 
-use super::bdpt::lens_dimension;
+use super::bidirectional::lens_dimension;
 use super::bidirectional::{
     Connector, Density, LightStart, Sink, Strategies, Subpath, Technique, Walker,
 };

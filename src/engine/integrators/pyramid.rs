@@ -7,7 +7,8 @@
 use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
-use super::bdpt::{Bdpt, Workspace};
+use super::bdpt::Bdpt;
+use super::bidirectional::Workspace;
 use super::bidirectional::{Sink, Technique};
 use super::{Cancelled, Params, Pass, RenderStats};
 use crate::engine::math::Rgb;

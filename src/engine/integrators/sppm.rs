@@ -8,7 +8,7 @@
 
 use super::path::{Mode, PathTracer, Walk};
 use super::tiled::{CAMERA_DIMENSIONS, RayIntegrator, SamplerKind, Tiled};
-use super::vcm::{ALPHA_PARAM, PhotonSource, RADIUS_PARAM};
+use super::vcm::{ALPHA_PARAM, PHOTONS_PARAM, PhotonSource, RADIUS_PARAM};
 use super::{
     Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
 };
@@ -37,6 +37,7 @@ pub const ENTRY: Entry = Entry {
 const PARAMS: &[ParamSpec] = &[
     RADIUS_PARAM,
     ALPHA_PARAM,
+    PHOTONS_PARAM,
     super::SAMPLER_PARAM,
     ParamSpec {
         name: "roulette",

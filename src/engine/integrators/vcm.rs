@@ -35,6 +35,7 @@ pub const ENTRY: Entry = Entry {
 const PARAMS: &[ParamSpec] = &[
     RADIUS_PARAM,
     ALPHA_PARAM,
+    PHOTONS_PARAM,
     ParamSpec {
         name: "heuristic",
         kind: ParamKind::Choice(&["balance", "power"]),
@@ -83,6 +84,17 @@ pub(super) const ALPHA_PARAM: ParamSpec = ParamSpec {
     doc: "How slowly the radius shrinks: after n passes its square is n^(alpha-1) of the first.",
 };
 
+/// How many photons there are.
+pub(super) const PHOTONS_PARAM: ParamSpec = ParamSpec {
+    name: "photons",
+    kind: ParamKind::Number(0.001, 16.0),
+    default: "1",
+    unit: "light paths a pixel",
+    matters: |_| true,
+    doc: "Light paths that a pass merges with, for every pixel. Fewer are quicker where shadow rays \
+          and connections find most of the light.",
+};
+
 /// Most light paths that one pass stores.
 pub(super) const MAX_PATHS: u64 = 1 << 18;
 /// Light paths of one chunk of work.
@@ -108,6 +120,8 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
 pub(super) struct PhotonSource {
     radius: f64,
     alpha: f64,
+    /// Light paths a pixel.
+    photons: f64,
     roulette: usize,
     sampler: SamplerKind,
 }
@@ -117,6 +131,7 @@ impl PhotonSource {
         Self {
             radius: params.number("radius"),
             alpha: params.number("alpha"),
+            photons: params.number("photons"),
             roulette: usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX),
             sampler: SamplerKind::of(params),
         }
@@ -130,9 +145,15 @@ impl PhotonSource {
         (self.radius * f64::from(scene) * shrink) as f32
     }
 
-    /// Traces the light paths of a pass, one for every pixel but no more than [`MAX_PATHS`].
+    /// Light paths of a pass: `photons` for every pixel, but no more than [`MAX_PATHS`].
+    fn paths(&self, cx: &Pass<'_>) -> u64 {
+        let pixels = cx.camera.size().as_dvec2().element_product();
+        ((pixels * self.photons) as u64).clamp(1, MAX_PATHS)
+    }
+
+    /// Traces the light paths of a pass.
     pub(super) fn trace(&self, cx: &Pass<'_>) -> Result<(PhotonGrid, RenderStats), Cancelled> {
-        let paths = paths_per_pass(cx);
+        let paths = self.paths(cx);
         let chunks = (0..paths.div_ceil(CHUNK)).into_par_iter();
         let done: Result<Vec<_>, Cancelled> = chunks
             .map(|c| {
@@ -158,7 +179,7 @@ impl PhotonSource {
         let SampleId::MergedPath { path: number, .. } = *sample else {
             return None;
         };
-        let paths = paths_per_pass(cx);
+        let paths = self.paths(cx);
         if number >= paths {
             let last = paths - 1;
             let why = format!("a pass of this size has the light paths 0 to {last}");
@@ -219,12 +240,6 @@ impl PhotonSource {
         }
         (list, stats)
     }
-}
-
-/// Light paths of a pass: one for every pixel, but no more than [`MAX_PATHS`].
-fn paths_per_pass(cx: &Pass<'_>) -> u64 {
-    let size = cx.camera.size();
-    (u64::from(size.x) * u64::from(size.y)).clamp(1, MAX_PATHS)
 }
 
 struct Vcm {

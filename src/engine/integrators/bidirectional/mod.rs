@@ -14,6 +14,7 @@
 
 mod connect;
 mod ends;
+mod estimator;
 mod flight;
 mod lost;
 mod merge;
@@ -28,6 +29,7 @@ mod tests;
 
 pub use connect::{Connector, Sink, Technique};
 pub use ends::LightEnd;
+pub use estimator::{Bidirectional, Workspace, lens_dimension};
 pub use lost::lost_words;
 pub use merge::{PhotonGrid, PhotonList};
 pub use strategies::{Heuristic, Strategies};

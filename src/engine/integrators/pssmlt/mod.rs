@@ -15,7 +15,8 @@ mod chain;
 use rayon::prelude::*;
 
 use self::chain::{Chain, Source};
-use super::bdpt::{Bidirectional, unconnectable};
+use super::bdpt::unconnectable;
+use super::bidirectional::Bidirectional;
 use super::bidirectional::{Heuristic, Strategies};
 use super::path::ENTRY as PATH;
 use super::{
