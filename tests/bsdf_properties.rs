@@ -158,6 +158,16 @@ fn eval_and_pdf_are_finite_for_any_pair() {
                     pdf > 0.0 || f.is_black(),
                     "{name} {wo} {wi}: f {f:?} without density"
                 );
+                let both = bsdf.eval_both_ways(event, wo, wi, Transport::Importance);
+                let expected = match f.is_black() {
+                    true => (f, 0.0, 0.0),
+                    false => (f, pdf, bsdf.pdf(event, wi, wo)),
+                };
+                assert_eq!(
+                    (both.f, both.toward, both.back),
+                    expected,
+                    "{name} {wo} {wi}"
+                );
             }
         }
     });

@@ -27,15 +27,32 @@ fn brute_force(parts: &[Geometry], ray: &Ray) -> Option<Hit> {
 
 #[test]
 fn soup_of_triangles_and_spheres_equals_brute_force() {
+    let hits = compare_soup(400, 100, 20_000);
+    assert!(hits > 5_000, "{hits} hits");
+}
+
+/// Few surfaces are met one by one, more in a hierarchy: the answers do not tell.
+#[test]
+fn small_soups_equal_brute_force() {
+    let all = [(1, 0), (0, 1), (3, 2), (16, 4), (32, 0), (29, 1), (33, 0)];
+    let hits: usize = all
+        .into_iter()
+        .map(|(triangles, spheres)| compare_soup(triangles, spheres, 2_000))
+        .sum();
+    assert!(hits > 1_000, "{hits} hits");
+}
+
+/// Compares `rays` rays, and returns how many met anything.
+fn compare_soup(count: u32, spheres: u32, rays: usize) -> usize {
     let mut s = sampler(1);
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
-    for i in 0..400_u32 {
+    for i in 0..count {
         let (center, size) = (point(&mut s), s.next_1d());
         positions.extend([0; 3].map(|_| center + size * point(&mut s)));
         triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
     }
-    let spheres: Vec<SphereInput> = (0..100)
+    let spheres: Vec<SphereInput> = (0..spheres)
         .map(|_| SphereInput {
             center: point(&mut s),
             radius: 0.1 * s.next_1d() + 1e-6,
@@ -60,7 +77,7 @@ fn soup_of_triangles_and_spheres_equals_brute_force() {
             .map(|sphere| Geometry::build(&[], &[*sphere]).0),
     );
     let mut hits = 0;
-    for _ in 0..20_000 {
+    for _ in 0..rays {
         let mut ray = Ray::new(2.0 * Vec3A::from(point(&mut s)), direction(&mut s));
         let expected = brute_force(&parts, &ray);
         assert_eq!(all.intersect(&ray), expected);
@@ -74,7 +91,7 @@ fn soup_of_triangles_and_spheres_equals_brute_force() {
             assert!(all.occluded(&ray));
         }
     }
-    assert!(hits > 5_000, "{hits} hits");
+    hits
 }
 
 #[test]

@@ -46,6 +46,15 @@ struct Weighted {
     lobe: Lobe,
 }
 
+impl Weighted {
+    /// Its f·|cosθ| and density.
+    #[inline]
+    fn eval(&self, view: &View, crossing: &Crossing, transport: Transport) -> (Rgb, f32) {
+        let (f, pdf) = self.lobe.eval(view, crossing, transport);
+        (self.weight * f, pdf)
+    }
+}
+
 #[inline]
 fn bit(letter: Letter) -> u8 {
     1 << letter as u8
@@ -162,7 +171,7 @@ impl Bsdf {
         let view = View::new(self.n_g, self.n_s, wo)?;
         if let Some(only) = self.lone_lambert() {
             let wi = only.lobe.sample(&view, u_event, u)?;
-            return self.sampled(&view, Event::Diffuse, only, wi, transport);
+            return self.sampled(&view, None, Event::Diffuse, only, wi, transport);
         }
         let shares = self.shares(&view);
         let (event, u_lobe) = shares.pick_event(u_event)?;
@@ -259,25 +268,24 @@ impl Bsdf {
         if let Some(only) = self.lone_lambert()
             && event == Event::Diffuse
         {
-            let (f, pdf) = only.lobe.eval(view, crossing, transport);
-            return (only.weight * f, pdf);
+            return only.eval(view, crossing, transport);
         }
-        self.eval_lobes(event, view, crossing, transport)
+        self.eval_lobes(&self.shares(view), event, view, crossing, transport)
     }
 
     #[inline(never)]
     fn eval_lobes(
         &self,
+        shares: &Shares,
         event: Event,
         view: &View,
         crossing: &Crossing,
         transport: Transport,
     ) -> (Rgb, f32) {
-        let shares = self.shares(view);
         let (mut f, mut pdf) = (Rgb::BLACK, 0.0);
         for (i, l) in self.lobes_of(event) {
-            let (f_lobe, pdf_lobe) = l.lobe.eval(view, crossing, transport);
-            f += l.weight * f_lobe;
+            let (f_lobe, pdf_lobe) = l.eval(view, crossing, transport);
+            f += f_lobe;
             pdf += shares.lobe[i] * pdf_lobe;
         }
         (f, if pdf > 0.0 { pdf / shares.total } else { 0.0 })
@@ -332,21 +340,26 @@ impl Bsdf {
         let lobes = self.lobes_of(event).map(|(i, _)| i);
         let (i, u_lobe) = shares.pick_lobe(lobes, shares.of(event), u_lobe)?;
         let wi = self.lobes[i].lobe.sample(view, u_lobe, u)?;
-        self.sampled(view, event, &self.lobes[i], wi, transport)
+        self.sampled(view, Some(shares), event, &self.lobes[i], wi, transport)
     }
 
-    /// What became of `wi`, which the lobe `from` gave: all lobes of the event together.
+    /// What became of `wi`, which the lobe `from` gave: all lobes of the event together, by `shares`
+    /// unless it is the only one.
     #[inline]
     fn sampled(
         &self,
         view: &View,
+        shares: Option<&Shares>,
         event: Event,
         from: &Weighted,
         wi: Vec3A,
         transport: Transport,
     ) -> Option<BsdfSample> {
         let crossing = view.crossing(wi)?;
-        let (f, pdf_dir) = self.eval_and_pdf(event, view, &crossing, transport);
+        let (f, pdf_dir) = match shares {
+            Some(shares) => self.eval_lobes(shares, event, view, &crossing, transport),
+            None => from.eval(view, &crossing, transport),
+        };
         let weight = f * (view.adjoint(&crossing, transport) / pdf_dir);
         // A density of 0 or a weight of 0: rejected by the side rules, or rounded over an edge.
         (pdf_dir > 0.0 && !weight.is_black() && weight.is_finite()).then_some(BsdfSample {

@@ -8,9 +8,8 @@
 use glam::Vec2;
 use rayon::prelude::*;
 
-use super::bidirectional::lens_dimension;
 use super::bidirectional::{
-    Connector, Density, LightStart, Sink, Strategies, Subpath, Technique, Walker,
+    Connector, Density, LightStart, Sink, Strategies, Subpath, Technique, Walker, lens_dimension,
 };
 use super::tiled::SamplerKind;
 use super::{

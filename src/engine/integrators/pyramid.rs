@@ -8,8 +8,7 @@ use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 
 use super::bdpt::Bdpt;
-use super::bidirectional::Workspace;
-use super::bidirectional::{Sink, Technique};
+use super::bidirectional::{Sink, Technique, Workspace};
 use super::{Cancelled, Params, Pass, RenderStats};
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;

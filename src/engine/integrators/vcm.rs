@@ -91,8 +91,8 @@ pub(super) const PHOTONS_PARAM: ParamSpec = ParamSpec {
     default: "1",
     unit: "light paths a pixel",
     matters: |_| true,
-    doc: "Light paths that a pass merges with, for every pixel. Fewer are quicker where shadow rays \
-          and connections find most of the light.",
+    doc: "Light paths that a pass merges with, for every pixel, but no more than 262144 in all. \
+          Fewer are quicker where the light is found by other strategies.",
 };
 
 /// Most light paths that one pass stores.

@@ -5,9 +5,23 @@ use glam::Vec3A;
 use crate::engine::geometry::SurfaceInteraction;
 use crate::engine::light::Light;
 
-/// A square of a distance whose inverse `f32` holds with room for densities of directions: where
-/// two points round to one, they keep a density.
-const LEAST_DISTANCE2: f32 = 1e-30;
+/// Largest inverse of a distance whose square `f32` holds with room for densities of directions:
+/// where two points round to one, they keep a density.
+const LARGEST_INVERSE: f32 = 1e15;
+
+/// The direction of `to` and the inverse of its square; `otherwise`, where it has none.
+#[inline]
+fn polar(to: Vec3A, otherwise: Vec3A) -> (Vec3A, f32) {
+    let distance2 = to.length_squared();
+    let inverse = 1.0 / distance2.sqrt();
+    let near = inverse.min(LARGEST_INVERSE);
+    let direction = if distance2 > 0.0 {
+        to * inverse
+    } else {
+        otherwise
+    };
+    (direction, near * near)
+}
 
 /// What turns densities of directions between two points, in 1/sr, into those of the points, in
 /// 1/m²: first that of `a`, seen from `b`, then that of `b`, seen from `a`. It is |cosθ| over the
@@ -16,9 +30,7 @@ const LEAST_DISTANCE2: f32 = 1e-30;
 /// transmittance.
 #[inline]
 pub fn areas(a: &SurfaceInteraction, b: &SurfaceInteraction) -> (f32, f32) {
-    let to = b.p - a.p;
-    let inverse2 = 1.0 / to.length_squared().max(LEAST_DISTANCE2);
-    let direction = to * inverse2.sqrt();
+    let (direction, inverse2) = polar(b.p - a.p, b.wo);
     (
         cosine(a, direction) * inverse2,
         cosine(b, direction) * inverse2,
@@ -29,9 +41,8 @@ pub fn areas(a: &SurfaceInteraction, b: &SurfaceInteraction) -> (f32, f32) {
 /// density `pdf_dir` in 1/sr.
 #[inline]
 pub fn area_density(pdf_dir: f32, from: Vec3A, si: &SurfaceInteraction) -> f32 {
-    let to = si.p - from;
-    let inverse2 = 1.0 / to.length_squared().max(LEAST_DISTANCE2);
-    pdf_dir * (cosine(si, to * inverse2.sqrt()) * inverse2)
+    let (direction, inverse2) = polar(si.p - from, si.wo);
+    pdf_dir * (cosine(si, direction) * inverse2)
 }
 
 /// |cosθ| of the unit direction `d`; 1 in a medium.
@@ -99,9 +110,8 @@ impl LightEnd {
         let Some(n) = self.n.filter(|_| !self.infinite) else {
             return pdf_dir;
         };
-        let to = self.p - from;
-        let inverse2 = 1.0 / to.length_squared().max(LEAST_DISTANCE2);
-        pdf_dir * (n.dot(to * inverse2.sqrt()).abs() * inverse2)
+        let (direction, inverse2) = polar(self.p - from, n);
+        pdf_dir * (n.dot(direction).abs() * inverse2)
     }
 
     /// Density of a shadow ray to this end, drawn with `pdf_li` in 1/sr at `from`, over that of

@@ -64,7 +64,7 @@ impl Bidirectional {
         let ray = cx.camera.generate_ray(film, lens);
         sink.begin(film, &ray);
         let escape = walker.from_lens(ray, CAMERA_DIMENSIONS, eye_sampler, eye, stats);
-        work.start = if self.walks_from_lights(cx.plan) {
+        work.start = if cx.plan.shadow_rays && self.strategies.walk_from_lights() {
             walker.from_light(light_sampler, light, stats)
         } else {
             None
@@ -97,11 +97,6 @@ impl Bidirectional {
             connector.lens_joins((light, start), &eye.densities(1)[0], light_sampler);
             connector.connections((light, start), eye);
         }
-    }
-
-    /// Whether any strategy needs a walk from a light.
-    pub fn walks_from_lights(&self, plan: &RenderPlan) -> bool {
-        plan.shadow_rays && self.strategies.walk_from_lights()
     }
 }
 

@@ -104,6 +104,8 @@ impl PhotonList {
 pub struct PhotonGrid {
     /// Photons sorted by bucket: those that are visited together lie together.
     list: PhotonList,
+    /// Their places alone: a search reads many and needs few of the photons.
+    places: Vec<Vec3A>,
     /// Photons of a bucket: from the entry of its number to the next.
     buckets: Vec<u32>,
     /// Radius of merging, m.
@@ -141,6 +143,7 @@ impl PhotonGrid {
         }
         list.photons = order.iter().map(|i| list.photons[*i as usize]).collect();
         Self {
+            places: list.photons.iter().map(|photon| photon.p).collect(),
             list,
             buckets,
             radius,
@@ -173,9 +176,9 @@ impl PhotonGrid {
             let row = low.wrapping_add(IVec3::new(0, i & 1, i >> 1));
             let b = bucket(row, count) as usize;
             let (first, end) = (self.buckets[b], self.buckets[(b + 2).min(count)]);
-            self.visit((first, end), row, p, r2, &mut visit);
+            self.visit_row((first, end), row, p, r2, &mut visit);
             if b + 2 > count {
-                self.visit((0, self.buckets[1]), row, p, r2, &mut visit);
+                self.visit_row((0, self.buckets[1]), row, p, r2, &mut visit);
             }
         }
     }
@@ -183,7 +186,7 @@ impl PhotonGrid {
     /// Visits those of the photons `first` to `end` that lie near `p` and in the cell `row` or the
     /// next one along x: cells of the same bucket are told apart, or a photon would count twice.
     #[inline(always)]
-    fn visit(
+    fn visit_row(
         &self,
         (first, end): (u32, u32),
         row: IVec3,
@@ -191,11 +194,12 @@ impl PhotonGrid {
         r2: f32,
         visit: &mut impl FnMut(&Photon),
     ) {
-        for photon in &self.list.photons[first as usize..end as usize] {
-            if photon.p.distance_squared(p) < r2 {
-                let cell = cell_of(photon.p, 2.0 * self.radius);
+        let range = first as usize..end as usize;
+        for (i, &place) in self.places[range.clone()].iter().enumerate() {
+            if place.distance_squared(p) < r2 {
+                let cell = cell_of(place, 2.0 * self.radius);
                 if (cell.y, cell.z) == (row.y, row.z) && cell.x.wrapping_sub(row.x) as u32 <= 1 {
-                    visit(photon);
+                    visit(&self.list.photons[range.start + i]);
                 }
             }
         }
@@ -220,6 +224,7 @@ impl PhotonGrid {
         size_of_val(&*self.list.photons)
             + size_of_val(&*self.list.paths)
             + size_of_val(&*self.list.densities)
+            + size_of_val(&*self.places)
             + size_of_val(&*self.buckets)
     }
 }

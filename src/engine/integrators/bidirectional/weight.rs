@@ -19,7 +19,8 @@ pub struct Density {
     pub own: f32,
     /// As the walk from the other end would draw it, 0 if it cannot.
     pub other: f32,
-    /// The event drawn there has a density, so that a connection may end there.
+    /// The event drawn there has a density, so that a connection may end there. True at both ends
+    /// of a path.
     pub connectible: bool,
     /// It is diffuse, so that vertices may be merged there.
     pub mergeable: bool,

@@ -4,8 +4,7 @@ use glam::Vec2;
 
 use super::Brightness;
 use crate::engine::film::SplatList;
-use crate::engine::integrators::bidirectional::{Bidirectional, Workspace};
-use crate::engine::integrators::bidirectional::{Sink, Technique};
+use crate::engine::integrators::bidirectional::{Bidirectional, Sink, Technique, Workspace};
 use crate::engine::integrators::tiled::CAMERA_DIMENSIONS;
 use crate::engine::integrators::{Pass, RenderStats, SampleId};
 use crate::engine::math::{Fault, FaultCounts, Rgb};

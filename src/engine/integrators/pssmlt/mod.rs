@@ -16,8 +16,7 @@ use rayon::prelude::*;
 
 use self::chain::{Chain, Source};
 use super::bdpt::unconnectable;
-use super::bidirectional::Bidirectional;
-use super::bidirectional::{Heuristic, Strategies};
+use super::bidirectional::{Bidirectional, Heuristic, Strategies};
 use super::path::ENTRY as PATH;
 use super::{
     Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, Recording,
