@@ -270,10 +270,23 @@ impl Bsdf {
         {
             return only.eval(view, crossing, transport);
         }
+        self.eval_mixed(event, view, crossing, transport)
+    }
+
+    /// Of several lobes, apart from what is inlined.
+    #[inline(never)]
+    fn eval_mixed(
+        &self,
+        event: Event,
+        view: &View,
+        crossing: &Crossing,
+        transport: Transport,
+    ) -> (Rgb, f32) {
         self.eval_lobes(&self.shares(view), event, view, crossing, transport)
     }
 
-    #[inline(never)]
+    /// By the shares of the lobes.
+    #[inline]
     fn eval_lobes(
         &self,
         shares: &Shares,
