@@ -2,7 +2,7 @@
 //!
 //! The boxes are tested conservatively (Ize 2013, *Robust BVH Ray Traversal*; Woop, Benthin and
 //! Wald 2013, section 4), so a triangle that its own test accepts is never culled by a box around
-//! it.
+//! it. A scene of few surfaces has no hierarchy: a ray is tested against all of them.
 
 use arrayvec::ArrayVec;
 use glam::{Vec3A, Vec4};

@@ -268,7 +268,7 @@ mod tests {
                     continue;
                 };
                 assert!(sign > 0.0, "behind, and met: {ray:?}");
-                ray.t_max = t;
+                ray.t_max = t.next_up();
                 assert_eq!(meets(&ray), Some(t));
                 ray.t_max = t.next_down();
                 assert_eq!(meets(&ray), None);
