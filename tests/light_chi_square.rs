@@ -9,7 +9,7 @@ use chi_square::{SphereGrid, assert_family, p_value, test_directions};
 use glam::{DVec3, Vec2, Vec3, Vec3A};
 use lightscope::engine::camera::Camera;
 use lightscope::engine::geometry::Ray;
-use lightscope::engine::light::Light;
+use lightscope::engine::light::{Light, Silhouette};
 use lightscope::engine::sampling::{IndependentSampler, Sampler, Stream};
 use lightscope::engine::scene::desc::{CameraDesc, LensDesc};
 
@@ -287,6 +287,74 @@ fn rays_from_lights_follow_pdf_le() {
             }
             let uniform = vec![1.0 / counts.len() as f64; counts.len()];
             p_values.push((format!("{name}: positions"), p_value(&uniform, &counts)));
+        }
+    }
+    assert_family(&p_values);
+}
+
+/// Whether the line through `o` along `d` meets the box of half sides `half` around the origin.
+fn meets_box(o: DVec3, d: DVec3, half: DVec3) -> bool {
+    let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
+    for i in 0..3 {
+        if d[i] == 0.0 {
+            if o[i].abs() > half[i] {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = ((-half[i] - o[i]) / d[i], (half[i] - o[i]) / d[i]);
+        first = first.max(a.min(b));
+        last = last.min(a.max(b));
+    }
+    first <= last
+}
+
+#[test]
+fn light_from_infinity_is_spread_evenly_over_the_shadow_of_the_scene() {
+    let box_and_plate = [
+        (Vec3::new(2.0, 3.0, 1.0), Vec3A::new(0.01, -0.02, 1.0)),
+        (Vec3::new(2.0, 0.0, 4.0), Vec3A::new(0.3, -0.4, 0.2)),
+    ];
+    let mut p_values = Vec::new();
+    for (k, (size, flat)) in box_and_plate.into_iter().enumerate() {
+        let directions = [Vec3A::new(-1.0, 1.5, -1.0), Vec3A::Y, flat];
+        let half = 0.5 * size;
+        let corners = [-half, half, Vec3::new(half.x, -half.y, -half.z)];
+        let lit = support::mesh(&corners, &[[0, 1, 2]]);
+        let silhouette = Silhouette::of(&lit.geometry);
+        // A little larger than the scene, and never flat.
+        let half = half.as_dvec3() + 1e-3 * half.as_dvec3().length();
+        for (i, d) in directions.into_iter().enumerate() {
+            let d = d.normalize();
+            let axis = d.as_dvec3();
+            let (s, t) = axis.normalize().any_orthonormal_pair();
+            let extent = half.length();
+            let place = |x: f64| (x - 0.5) * 2.0 * extent;
+            let fine = 100 * BINS;
+            let mut shadow = vec![0.0; BINS * BINS];
+            for y in 0..fine {
+                for x in 0..fine {
+                    let at = |i: usize| place((i as f64 + 0.5) / fine as f64);
+                    if meets_box(s * at(x) + t * at(y), axis, half) {
+                        shadow[y / 100 * BINS + x / 100] += 1.0;
+                    }
+                }
+            }
+            let total: f64 = shadow.iter().sum();
+            let area = total * (2.0 * extent / fine as f64).powi(2);
+            let claimed = f64::from(silhouette.pdf_pos(d)) * area;
+            assert!((claimed - 1.0).abs() < 0.01, "{size} {d}: {claimed}");
+            shadow.iter_mut().for_each(|p| *p /= total);
+            let mut counts = vec![0; BINS * BINS];
+            let mut next = numbers(700 + 10 * k as u64 + i as u64);
+            for _ in 0..SAMPLES {
+                let ray = silhouette.enter(d, next().0);
+                let o = ray.o.as_dvec3();
+                assert!(o.dot(axis) < 0.0 && meets_box(o, axis, half * 1.00001));
+                let index = |x: f64| ((0.5 + x / (2.0 * extent)) * BINS as f64) as usize;
+                counts[index(o.dot(t)) * BINS + index(o.dot(s))] += 1;
+            }
+            p_values.push((format!("{size} along {d}"), p_value(&shadow, &counts)));
         }
     }
     assert_family(&p_values);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3, Vec3A};
 use lightscope::engine::geometry::{Geometry, MeshInput, SphereInput};
-use lightscope::engine::light::{Emitter, Lights};
+use lightscope::engine::light::{Emitter, Lights, Silhouette};
 use lightscope::engine::math::Rgb;
 use lightscope::engine::scene::desc::{ImageData, LightDesc};
 
@@ -24,7 +24,7 @@ fn lit(meshes: &[MeshInput<'_>], spheres: &[SphereInput], descs: &[LightDesc]) -
             radiance: RADIANCE,
         })
         .collect();
-    let lights = Lights::build(descs, &emitters, &geometry).unwrap();
+    let lights = Lights::build(descs, &emitters, &geometry, Silhouette::of(&geometry)).unwrap();
     geometry.set_lights(|prim| lights.of_primitive(prim));
     Lit { geometry, lights }
 }

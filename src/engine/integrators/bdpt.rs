@@ -22,7 +22,7 @@ use crate::engine::film::{Film, PassBuffer, SampleRadiance, SplatBuffer, SplatLi
 use crate::engine::geometry::Ray;
 use crate::engine::math::Rgb;
 use crate::engine::path::ClassId;
-use crate::engine::sampling::{IndependentSampler, Sampler, SobolSampler, Stream};
+use crate::engine::sampling::{IndependentSampler, Sampler, Shift, SobolSampler, Stream, morton};
 use crate::engine::scene::features::SceneFeatures;
 
 /// Registry entry.
@@ -59,12 +59,11 @@ const PARAMS: &[ParamSpec] = &[
     },
     ParamSpec {
         name: "heuristic",
-        kind: ParamKind::Choice(&["power", "balance"]),
-        default: "power",
+        kind: ParamKind::Choice(&["balance", "power"]),
+        default: "balance",
         unit: "",
         matters: |_| true,
-        doc: "How strategies share a path: in proportion to the squares of their densities, or to \
-              the densities.",
+        doc: "How strategies share a path: in proportion to their densities, or to the squares.",
     },
     super::SAMPLER_PARAM,
     ParamSpec {
@@ -81,6 +80,9 @@ const PARAMS: &[ParamSpec] = &[
 const CHUNK: usize = 16;
 /// Chunks whose splats are held at the same time.
 const ROUND: usize = 128;
+/// Side of the squares of pixels whose light walks are spread evenly together: as many pixels as a
+/// net has points.
+const NET_SIDE: u32 = 256;
 
 fn build(params: &Params) -> Box<dyn Integrator> {
     Box::new(Bdpt::new(params))
@@ -114,8 +116,8 @@ pub(super) fn unconnectable(features: &SceneFeatures) -> Option<Missing> {
 /// The estimator that `params` ask for.
 fn estimator(params: &Params) -> Bidirectional {
     let heuristic = match params.choice("heuristic") {
-        "balance" => Heuristic::Balance,
-        _ => Heuristic::Power,
+        "power" => Heuristic::Power,
+        _ => Heuristic::Balance,
     };
     let strategies = params.strategies("strategies").with(heuristic);
     let roulette = usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX);
@@ -202,11 +204,16 @@ impl Bdpt {
         self.grid.as_ref()
     }
 
-    /// Takes the sample of `pixel` in the pass `cx`.
+    /// What moves the points of this pass's light walks.
+    pub(super) fn light_shift(cx: &Pass<'_>) -> Shift {
+        Shift::new(cx.seed, Stream::Light, (cx.index % 2, cx.index / 2))
+    }
+
+    /// Takes the sample of `pixel` in the pass `cx`, whose [`Self::light_shift`] is `shift`.
     pub(super) fn sample_pixel(
         &self,
         cx: &Pass<'_>,
-        pixel: UVec2,
+        (pixel, shift): (UVec2, &Shift),
         work: &mut Workspace,
         sink: &mut impl Sink,
         stats: &mut RenderStats,
@@ -222,18 +229,22 @@ impl Bdpt {
                 self.sample_with(cx, pixel, samplers, work, sink, stats);
             }
             SamplerKind::Sobol => {
-                let new = |stream| SobolSampler::new(cx.seed, stream, index);
-                let samplers = (new(Stream::Camera), new(Stream::Light));
-                self.sample_with(cx, pixel, samplers, work, sink, stats);
+                let eye = SobolSampler::new(cx.seed, Stream::Camera, index);
+                // The light walks of a square of pixels are a net, so that they spread evenly.
+                let square = pixel / NET_SIDE;
+                let net = (u64::from(square.y) << 32 | u64::from(square.x)) + 1;
+                let index = (net * 2 + cx.index % 2, morton(pixel % NET_SIDE));
+                let light = SobolSampler::shifted(cx.seed, Stream::Light, index, shift);
+                self.sample_with(cx, pixel, (eye, light), work, sink, stats);
             }
         }
     }
 
-    fn sample_with<S: Sampler>(
+    fn sample_with(
         &self,
         cx: &Pass<'_>,
         pixel: UVec2,
-        (mut eye, mut light): (S, S),
+        (mut eye, mut light): (impl Sampler, impl Sampler),
         work: &mut Workspace,
         sink: &mut impl Sink,
         stats: &mut RenderStats,
@@ -272,6 +283,7 @@ impl Bdpt {
         let mut out = SampleRadiance::new(&cx.plan.classes, cx.plan.planned);
         let mut work = Workspace::default();
         let layout = crate::engine::film::tiles::Tiles::new(cx.camera.size());
+        let shift = Self::light_shift(cx);
         for (i, tile) in tiles.iter_mut().enumerate() {
             cx.cancel.check()?;
             tile.begin();
@@ -282,7 +294,8 @@ impl Bdpt {
                     splats: &mut splats,
                 };
                 let before = stats.errors();
-                self.sample_pixel(cx, pixel, &mut work, &mut sink, &mut stats);
+                let sample = (pixel, &shift);
+                self.sample_pixel(cx, sample, &mut work, &mut sink, &mut stats);
                 stats.faults.look_at(out.whole());
                 stats.faults += splats.take_faults();
                 tile.put(place, cx.plan.planned, &out);
@@ -336,7 +349,8 @@ impl Integrator for Bdpt {
         };
         let (mut work, mut found) = (Workspace::default(), Recording::default());
         let mut stats = RenderStats::default();
-        self.sample_pixel(cx, pixel, &mut work, &mut found, &mut stats);
+        let sample = (pixel, &Self::light_shift(cx));
+        self.sample_pixel(cx, sample, &mut work, &mut found, &mut stats);
         // First the walks, then what their strategies found.
         to.steps.push(found.steps.remove(0));
         to.subpath(&work.eye);

@@ -155,12 +155,13 @@ fn fill(bdpt: &Bdpt, cx: &Pass<'_>, rows: std::ops::Range<u32>, most: usize) -> 
         most,
         entries: Vec::new(),
     };
-    let mut work = Workspace::default();
+    let (mut work, shift) = (Workspace::default(), Bdpt::light_shift(cx));
     for y in rows {
         for x in 0..cx.camera.size().x {
             list.pixel = UVec2::new(x, y);
             let mut stats = RenderStats::default();
-            bdpt.sample_pixel(cx, list.pixel, &mut work, &mut list, &mut stats);
+            let sample = (list.pixel, &shift);
+            bdpt.sample_pixel(cx, sample, &mut work, &mut list, &mut stats);
         }
     }
     list

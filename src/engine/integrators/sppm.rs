@@ -8,7 +8,7 @@
 
 use super::path::{Mode, PathTracer, Walk};
 use super::tiled::{CAMERA_DIMENSIONS, RayIntegrator, SamplerKind, Tiled};
-use super::vcm::{ALPHA_PARAM, PHOTONS_PARAM, PhotonSource, RADIUS_PARAM};
+use super::vcm::{ALPHA_PARAM, PhotonSource, RADIUS_PARAM, photons_param};
 use super::{
     Cancelled, Entry, Fact, Integrator, Missing, ParamKind, ParamSpec, Params, Pass, RenderStats,
 };
@@ -37,7 +37,10 @@ pub const ENTRY: Entry = Entry {
 const PARAMS: &[ParamSpec] = &[
     RADIUS_PARAM,
     ALPHA_PARAM,
-    PHOTONS_PARAM,
+    ParamSpec {
+        default: "2",
+        ..photons_param()
+    },
     super::SAMPLER_PARAM,
     ParamSpec {
         name: "roulette",

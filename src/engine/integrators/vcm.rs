@@ -7,6 +7,8 @@
 //! and Zwicker 2011, *Progressive Photon Mapping: A Probabilistic Approach*). Memory is that of the
 //! light paths of one pass, of which there are at most `MAX_PATHS`.
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
 use super::bdpt::Bdpt;
@@ -17,6 +19,7 @@ use super::{
     RenderStats, ReplayError, SampleId,
 };
 use crate::engine::film::Film;
+use crate::engine::plan::{LayerSettings, RenderPlan};
 use crate::engine::sampling::{IndependentSampler, SobolSampler, Stream};
 use crate::engine::scene::features::SceneFeatures;
 
@@ -84,19 +87,29 @@ pub(super) const ALPHA_PARAM: ParamSpec = ParamSpec {
     doc: "How slowly the radius shrinks: after n passes its square is n^(alpha-1) of the first.",
 };
 
-/// How many photons there are.
-pub(super) const PHOTONS_PARAM: ParamSpec = ParamSpec {
-    name: "photons",
-    kind: ParamKind::Number(0.001, 16.0),
-    default: "1",
-    unit: "light paths a pixel",
-    matters: |_| true,
-    doc: "Light paths that a pass merges with, for every pixel, but no more than 262144 in all. \
-          Fewer are quicker where the light is found by other strategies.",
+/// How many photons a pass merges with.
+const PHOTONS_PARAM: ParamSpec = ParamSpec {
+    default: "0.75",
+    ..photons_param()
 };
+
+/// The same for any algorithm, but for the default.
+pub(super) const fn photons_param() -> ParamSpec {
+    ParamSpec {
+        name: "photons",
+        kind: ParamKind::Number(0.001, 64.0),
+        default: "",
+        unit: "a pixel",
+        matters: |_| true,
+        doc: "Photons that a pass stores, for every pixel, by as many light paths as that takes, \
+              but no more than 262144. Fewer are quicker where other strategies find the light.",
+    }
+}
 
 /// Most light paths that one pass stores.
 pub(super) const MAX_PATHS: u64 = 1 << 18;
+/// Light paths that tell how many a number of photons takes.
+const PILOT: u64 = 4096;
 /// Light paths of one chunk of work.
 const CHUNK: u64 = 1024;
 
@@ -120,8 +133,10 @@ fn missing(features: &SceneFeatures, _params: &Params) -> Option<Missing> {
 pub(super) struct PhotonSource {
     radius: f64,
     alpha: f64,
-    /// Light paths a pixel.
+    /// Photons a pixel.
     photons: f64,
+    /// Photons that a light path leaves, about.
+    yield_of_a_path: OnceLock<f64>,
     roulette: usize,
     sampler: SamplerKind,
 }
@@ -132,6 +147,7 @@ impl PhotonSource {
             radius: params.number("radius"),
             alpha: params.number("alpha"),
             photons: params.number("photons"),
+            yield_of_a_path: OnceLock::new(),
             roulette: usize::try_from(params.integer("roulette")).unwrap_or(usize::MAX),
             sampler: SamplerKind::of(params),
         }
@@ -145,10 +161,35 @@ impl PhotonSource {
         (self.radius * f64::from(scene) * shrink) as f32
     }
 
-    /// Light paths of a pass: `photons` for every pixel, but no more than [`MAX_PATHS`].
+    /// Light paths of a pass: as many as leave `photons` for every pixel, but no more than
+    /// [`MAX_PATHS`].
     fn paths(&self, cx: &Pass<'_>) -> u64 {
         let pixels = cx.camera.size().as_dvec2().element_product();
-        ((pixels * self.photons) as u64).clamp(1, MAX_PATHS)
+        let each = self.yield_of_a_path.get_or_init(|| self.pilot(cx));
+        ((pixels * self.photons / each) as u64).clamp(1, MAX_PATHS)
+    }
+
+    /// Photons that a light path leaves, by a few of all kinds: it depends on the scene alone, so
+    /// that any pass of any job finds the same.
+    fn pilot(&self, cx: &Pass<'_>) -> f64 {
+        let Ok(plan) = RenderPlan::new(cx.scene, false, &LayerSettings::default()) else {
+            return 1.0;
+        };
+        let cx = Pass {
+            plan: &plan,
+            seed: 0,
+            ..*cx
+        };
+        let (mut list, mut path) = (PhotonList::default(), Subpath::default());
+        let walker = self.walker(&cx);
+        for i in 0..PILOT {
+            let mut sampler = SobolSampler::new(cx.seed, Stream::Preparation, (0, i));
+            let start = walker.from_light(&mut sampler, &mut path, &mut RenderStats::default());
+            if let Some(start) = start {
+                list.store(&path, &start);
+            }
+        }
+        list.len().max(1) as f64 / PILOT as f64
     }
 
     /// Traces the light paths of a pass.
@@ -194,6 +235,13 @@ impl PhotonSource {
         Some(Ok(()))
     }
 
+    fn walker<'a>(&self, cx: &'a Pass<'a>) -> Walker<'a> {
+        Walker {
+            cx,
+            roulette: self.roulette,
+        }
+    }
+
     /// Light path `number` of a pass.
     fn trace_path(
         &self,
@@ -203,10 +251,7 @@ impl PhotonSource {
         path: &mut Subpath,
         stats: &mut RenderStats,
     ) -> Option<LightStart> {
-        let walker = Walker {
-            cx,
-            roulette: self.roulette,
-        };
+        let walker = self.walker(cx);
         // Even and odd passes are two scrambles, so that their difference measures the error.
         let index = (cx.index % 2, cx.index / 2 * per_pass + number);
         match self.sampler {

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3A};
 
-use super::directional::SceneSphere;
+use super::silhouette::Silhouette;
 use super::{EmissionSample, LightSample};
+use crate::engine::math::Rgb;
 use crate::engine::math::distribution::Discrete2d;
 use crate::engine::math::float::safe_sqrt;
-use crate::engine::math::{Frame, Rgb};
 use crate::engine::sampling::warp::{pdf_sphere, sample_sphere};
 use crate::engine::scene::desc::ImageData;
 
@@ -17,7 +17,7 @@ use crate::engine::scene::desc::ImageData;
 #[derive(Clone, Debug)]
 pub struct EnvironmentLight {
     source: Source,
-    scene: SceneSphere,
+    scene: Silhouette,
 }
 
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ struct Map {
 
 impl EnvironmentLight {
     /// The same radiance from every direction.
-    pub fn constant(radiance: Rgb, scene: SceneSphere) -> Self {
+    pub fn constant(radiance: Rgb, scene: Silhouette) -> Self {
         Self {
             source: Source::Constant(radiance),
             scene,
@@ -55,7 +55,7 @@ impl EnvironmentLight {
         image: Arc<ImageData>,
         scale: Rgb,
         rotation: Quat,
-        scene: SceneSphere,
+        scene: Silhouette,
     ) -> Result<Option<Self>, String> {
         let (width, height) = (image.width, image.height);
         let name = &image.name;
@@ -152,33 +152,33 @@ impl EnvironmentLight {
     /// See [`super::Light::sample_le`].
     pub fn sample_le(&self, u_pos: Vec2, u_dir: Vec2) -> Option<EmissionSample> {
         let (wi, pdf_dir, radiance) = self.sample_dir(u_dir)?;
-        let ray = self.scene.enter(&Frame::from_normal(-wi), u_pos);
+        let ray = self.scene.enter(-wi, u_pos);
         Some(EmissionSample {
             ray,
             p: ray.o,
             p_error: Vec3A::ZERO,
             n: None,
             radiance,
-            pdf_pos: self.scene.pdf_pos(),
+            pdf_pos: self.scene.pdf_pos(wi),
             pdf_dir,
             is_delta_pos: false,
             is_delta_dir: false,
         })
     }
 
-    /// Density of the start points of [`EnvironmentLight::sample_le`], 1/m².
+    /// Density of the start points of the rays of [`EnvironmentLight::sample_le`] along `d`, 1/m².
     #[inline]
-    pub fn pdf_pos(&self) -> f32 {
-        self.scene.pdf_pos()
+    pub fn pdf_pos(&self, d: Vec3A) -> f32 {
+        self.scene.pdf_pos(d)
     }
 
-    /// 4π · mean radiance · cross section of the scene's bounding sphere.
+    /// 4π · mean radiance · mean area of the scene's shadow: the flux of even light.
     pub fn power(&self) -> Rgb {
         let mean = match &self.source {
             Source::Constant(radiance) => *radiance,
             Source::Image(map) => map.mean,
         };
-        mean * (4.0 * PI * self.scene.cross_section())
+        mean * (4.0 * PI * self.scene.mean_area())
     }
 }
 

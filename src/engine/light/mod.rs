@@ -12,6 +12,7 @@ pub mod directional;
 pub mod environment;
 pub mod point;
 pub mod select;
+pub mod silhouette;
 pub mod sphere;
 mod spherical_triangle;
 pub mod triangle;
@@ -20,6 +21,7 @@ pub use directional::DirectionalLight;
 pub use environment::EnvironmentLight;
 pub use point::{PointLight, SpotLight};
 pub use select::{Emitter, Lights};
+pub use silhouette::Silhouette;
 pub use sphere::SphereLight;
 pub use triangle::{QuadLight, TriangleLight};
 
@@ -196,7 +198,7 @@ impl Light {
             Self::Point(_) => (1.0, super::sampling::warp::pdf_sphere()),
             Self::Spot(light) => (1.0, light.pdf_dir(d)),
             Self::Directional(light) => (light.pdf_pos(), 1.0),
-            Self::Environment(light) => (light.pdf_pos(), light.pdf_dir(-d)),
+            Self::Environment(light) => (light.pdf_pos(d), light.pdf_dir(-d)),
         }
     }
 
@@ -212,7 +214,7 @@ impl Light {
         matches!(self, Self::Directional(_) | Self::Environment(_))
     }
 
-    /// Emitted flux in W; for lights at infinity the flux through the scene's bounding sphere.
+    /// Emitted flux in W; for lights at infinity the flux through the scene's silhouette.
     pub fn power(&self) -> Rgb {
         match self {
             Self::Triangle(light) => light.power(),

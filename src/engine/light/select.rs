@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use glam::{Vec2, Vec3A};
 
-use super::directional::SceneSphere;
 use super::environment::is_radiance;
+use super::silhouette::Silhouette;
 use super::{
     DirectionalLight, EnvironmentLight, Light, LightSample, PointLight, QuadLight, SphereLight,
     SpotLight, TriangleLight,
@@ -41,7 +41,8 @@ pub struct Lights {
 
 impl Lights {
     /// Prepares the lights without surface in `descs` and the primitives of `geometry` in
-    /// `emitters`. Two consecutive triangles of one quadrangle become one light.
+    /// `emitters`; light from infinity enters `scene`. Two consecutive triangles of one quadrangle
+    /// become one light.
     ///
     /// # Errors
     /// A sentence, where a light's values make no sense.
@@ -49,10 +50,10 @@ impl Lights {
         descs: &[LightDesc],
         emitters: &[Emitter],
         geometry: &Geometry,
+        scene: Silhouette,
     ) -> Result<Self, String> {
         let mut lights = Self::default();
         lights.add_emitters(emitters, geometry)?;
-        let scene = SceneSphere::of(geometry);
         for desc in descs {
             if let Some(light) = prepare(desc, scene)? {
                 lights.add(light);
@@ -239,7 +240,7 @@ fn no_direction(what: &str) -> String {
 }
 
 /// A light without surface; `None` for a black environment.
-fn prepare(desc: &LightDesc, scene: SceneSphere) -> Result<Option<Light>, String> {
+fn prepare(desc: &LightDesc, scene: Silhouette) -> Result<Option<Light>, String> {
     match desc {
         LightDesc::Point {
             position,

@@ -15,4 +15,4 @@ pub use independent::IndependentSampler;
 pub use primary_space::{PrimarySpace, StepKey};
 pub use roulette::MAX_SURVIVAL;
 pub use sampler::{Sampler, Stream};
-pub use sobol::SobolSampler;
+pub use sobol::{Shift, SobolSampler, morton};

@@ -9,7 +9,7 @@ use super::features::SceneFeatures;
 use super::material::{Features, Material};
 use super::prepared::Scene;
 use crate::engine::geometry::{DropReport, Geometry, MeshInput, SphereInput};
-use crate::engine::light::{Emitter, Lights};
+use crate::engine::light::{Emitter, Lights, Silhouette};
 use crate::engine::media::Media;
 
 impl Scene {
@@ -35,7 +35,12 @@ impl Scene {
         let (mut geometry, dropped) = Geometry::build(&meshes, &spheres);
 
         let (emitters, covered) = emitters(desc, &order, &geometry);
-        let lights = Lights::build(&desc.lights, &emitters, &geometry)?;
+        // A medium everywhere ends at the sphere around the scene.
+        let silhouette = match desc.media.everywhere {
+            Some(_) => Silhouette::sphere(&geometry),
+            None => Silhouette::of(&geometry),
+        };
+        let lights = Lights::build(&desc.lights, &emitters, &geometry, silhouette)?;
         geometry.set_lights(|prim| lights.of_primitive(prim));
         let inward = |sphere: usize| desc.spheres[sphere].inward;
         let at_infinity = lights.as_slice().iter().any(|l| l.is_infinite());

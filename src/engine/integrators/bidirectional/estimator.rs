@@ -46,11 +46,11 @@ impl Bidirectional {
         clippy::too_many_arguments,
         reason = "what one sample needs and where it goes"
     )]
-    pub fn sample<S: Sampler>(
+    pub fn sample(
         &self,
         cx: &Pass<'_>,
         (film, lens): (Vec2, Vec2),
-        (eye_sampler, light_sampler): (&mut S, &mut S),
+        (eye_sampler, light_sampler): (&mut impl Sampler, &mut impl Sampler),
         grid: Option<&PhotonGrid>,
         work: &mut Workspace,
         sink: &mut impl Sink,

@@ -85,6 +85,16 @@ impl PhotonList {
         }
     }
 
+    /// Number of photons.
+    pub fn len(&self) -> usize {
+        self.photons.len()
+    }
+
+    /// Whether none was stored.
+    pub fn is_empty(&self) -> bool {
+        self.photons.is_empty()
+    }
+
     fn append(&mut self, other: &Self) {
         let (paths, densities) = (self.paths.len() as u32, self.densities.len() as u32);
         self.photons.extend(other.photons.iter().map(|p| Photon {
