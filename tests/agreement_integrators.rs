@@ -181,9 +181,9 @@ fn single_strategies_agree_where_each_finds_all() {
         let alone = run(one, if one == "0,4" { 384 } else { 96 });
         assert_agree(&format!("bdpt {one}"), &alone, &all, &[(EXPR1, EXPR1)]);
     }
-    let balance = runs_of(job(&scene, "bdpt", &[("heuristic", "balance")]), 16);
-    let power = runs_of(job(&scene, "bdpt", &[]), 16);
-    assert_agree("balance", &balance, &power, &WHOLE_AND_COMPONENTS);
+    let power = runs_of(job(&scene, "bdpt", &[("heuristic", "power")]), 16);
+    let balance = runs_of(job(&scene, "bdpt", &[]), 16);
+    assert_agree("power", &power, &balance, &WHOLE_AND_COMPONENTS);
 }
 
 const WHITTED: &str = "LDS*E|LGS*E|LS*E";

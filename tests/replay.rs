@@ -364,7 +364,14 @@ fn what_cannot_be_replayed_is_refused_in_a_sentence() {
             "the stream light",
         ),
         ("light", SampleId::LightPath { path: 130, pass }, "0 to 129"),
-        ("vcm", SampleId::MergedPath { path: 130, pass }, "0 to 129"),
+        (
+            "vcm",
+            SampleId::MergedPath {
+                path: u64::MAX,
+                pass,
+            },
+            "has the light paths 0 to",
+        ),
     ] {
         let mut setup = Setup::new(Arc::clone(&scene), id, &[]);
         match setup.replay(sample) {

@@ -11,6 +11,7 @@
 
 mod fresnel;
 mod ggx;
+mod lambert;
 mod lobe;
 mod scatter;
 mod shares;

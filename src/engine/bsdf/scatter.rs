@@ -4,6 +4,7 @@ use arrayvec::ArrayVec;
 use glam::{Vec2, Vec3A};
 
 use super::Transport;
+use super::lambert;
 use super::lobe::Lobe;
 use super::shares::Shares;
 use super::view::{Crossing, View};
@@ -168,11 +169,17 @@ impl Bsdf {
         u: Vec2,
         transport: Transport,
     ) -> Option<BsdfSample> {
-        let view = View::new(self.n_g, self.n_s, wo)?;
-        if let Some(only) = self.lone_lambert() {
-            let wi = only.lobe.sample(&view, u_event, u)?;
-            return self.sampled(&view, None, Event::Diffuse, only, wi, transport);
+        if let Some(weight) = self.plain() {
+            let (wi, pdf_dir) = lambert::sample(self.n_g, wo, u)?;
+            return Some(BsdfSample {
+                wi,
+                weight,
+                pdf_dir,
+                event: Event::Diffuse,
+                eta: 1.0,
+            });
         }
+        let view = View::new(self.n_g, self.n_s, wo)?;
         let shares = self.shares(&view);
         let (event, u_lobe) = shares.pick_event(u_event)?;
         self.sample_from(&view, &shares, event, u_lobe, u, transport)
@@ -211,6 +218,9 @@ impl Bsdf {
     /// [`Self::event_probability`].
     #[inline]
     pub fn pdf(&self, event: Event, wo: Vec3A, wi: Vec3A) -> f32 {
+        if self.plain().is_some() && event == Event::Diffuse {
+            return lambert::pdf_both_ways(self.n_g, wo, wi).map_or(0.0, |(toward, _)| toward);
+        }
         let Some((view, crossing)) = self.directions(wo, wi) else {
             return 0.0;
         };
@@ -229,6 +239,16 @@ impl Bsdf {
         wi: Vec3A,
         transport: Transport,
     ) -> Evaluation {
+        if let Some(weight) = self.plain()
+            && event == Event::Diffuse
+        {
+            let both = lambert::pdf_both_ways(self.n_g, wo, wi);
+            return both.map_or(Evaluation::default(), |(toward, back)| Evaluation {
+                f: weight * toward,
+                toward,
+                back,
+            });
+        }
         let Some((view, crossing)) = self.directions(wo, wi) else {
             return Evaluation::default();
         };
@@ -247,35 +267,19 @@ impl Bsdf {
         }
     }
 
-    /// The lobe of most surfaces, where it is the only one: nothing is to be chosen there.
+    /// The weight of what most surfaces have: one Lambert lobe, and one normal. Nothing is to be
+    /// chosen there, and every factor between the normals is 1.
     #[inline]
-    fn lone_lambert(&self) -> Option<&Weighted> {
+    fn plain(&self) -> Option<Rgb> {
         match &self.lobes[..] {
-            [only] if only.lobe == Lobe::Lambert => Some(only),
+            [only] if only.lobe == Lobe::Lambert && self.n_g == self.n_s => Some(only.weight),
             _ => None,
         }
     }
 
-    /// Before the factor of the adjoint.
-    #[inline]
-    fn eval_and_pdf(
-        &self,
-        event: Event,
-        view: &View,
-        crossing: &Crossing,
-        transport: Transport,
-    ) -> (Rgb, f32) {
-        if let Some(only) = self.lone_lambert()
-            && event == Event::Diffuse
-        {
-            return only.eval(view, crossing, transport);
-        }
-        self.eval_mixed(event, view, crossing, transport)
-    }
-
-    /// Of several lobes, apart from what is inlined.
+    /// Before the factor of the adjoint. Apart from what is inlined for plain surfaces.
     #[inline(never)]
-    fn eval_mixed(
+    fn eval_and_pdf(
         &self,
         event: Event,
         view: &View,
@@ -353,26 +357,22 @@ impl Bsdf {
         let lobes = self.lobes_of(event).map(|(i, _)| i);
         let (i, u_lobe) = shares.pick_lobe(lobes, shares.of(event), u_lobe)?;
         let wi = self.lobes[i].lobe.sample(view, u_lobe, u)?;
-        self.sampled(view, Some(shares), event, &self.lobes[i], wi, transport)
+        self.sampled(view, shares, event, &self.lobes[i], wi, transport)
     }
 
-    /// What became of `wi`, which the lobe `from` gave: all lobes of the event together, by `shares`
-    /// unless it is the only one.
+    /// What became of `wi`, which the lobe `from` gave: all lobes of the event together.
     #[inline]
     fn sampled(
         &self,
         view: &View,
-        shares: Option<&Shares>,
+        shares: &Shares,
         event: Event,
         from: &Weighted,
         wi: Vec3A,
         transport: Transport,
     ) -> Option<BsdfSample> {
         let crossing = view.crossing(wi)?;
-        let (f, pdf_dir) = match shares {
-            Some(shares) => self.eval_lobes(shares, event, view, &crossing, transport),
-            None => from.eval(view, &crossing, transport),
-        };
+        let (f, pdf_dir) = self.eval_lobes(shares, event, view, &crossing, transport);
         let weight = f * (view.adjoint(&crossing, transport) / pdf_dir);
         // A density of 0 or a weight of 0: rejected by the side rules, or rounded over an edge.
         (pdf_dir > 0.0 && !weight.is_black() && weight.is_finite()).then_some(BsdfSample {

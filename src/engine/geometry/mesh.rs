@@ -194,7 +194,9 @@ impl TriangleMesh {
     pub fn point(&self, prim: u32, u: f32, v: f32) -> TrianglePoint {
         let triangle = self.triangles[prim as usize];
         let part = &self.parts[self.part_of[prim as usize] as usize];
-        let corners = triangle.map(|i| self.positions[i as usize].as_dvec3());
+        // Not by `map` over the corners, which is not inlined.
+        let at = |i: u32| self.positions[i as usize].as_dvec3();
+        let corners = [at(triangle[0]), at(triangle[1]), at(triangle[2])];
         let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
         let cross = e1.cross(e2);
         let largest = corners[0].abs().max(corners[1].abs()).max(corners[2].abs());
@@ -205,7 +207,9 @@ impl TriangleMesh {
         let p = inset(p, [1.0 - b1 - b2, b1, b2], [e1, e2, cross], within).as_vec3a();
         let p_error = p.abs() * MACHINE_EPSILON + largest * (16.0 * MACHINE_EPSILON.powi(2));
         let n_g = cross.normalize().as_vec3a();
-        let local = triangle.map(|i| (i - part.first_vertex) as usize);
+        let of_part = |i: u32| (i - part.first_vertex) as usize;
+        let [a, b, c] = triangle;
+        let local = [of_part(a), of_part(b), of_part(c)];
         let b = [1.0 - u - v, u, v];
         TrianglePoint {
             p,

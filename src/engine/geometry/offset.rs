@@ -32,14 +32,21 @@ pub fn offset_origin(p: Vec3A, p_error: Vec3A, n_g: Vec3A, d: Vec3A) -> Vec3A {
 /// room. `e1` and `e2` are the edges from the first corner, `cross` is e1 × e2.
 #[inline]
 pub fn inset(p: DVec3, b: [f64; 3], [e1, e2, cross]: [DVec3; 3], p_error: Vec3A) -> DVec3 {
-    let longest = e1.length_squared().max(e2.length_squared());
-    let longest = longest.max((e2 - e1).length_squared());
-    let least = 4.0 * p_error.as_dvec3().length();
-    let nearest = b[0].min(b[1]).min(b[2]).max(0.0);
-    // The height over an edge is twice the area, |cross|, by its length.
-    if nearest.powi(2) * cross.length_squared() >= least.powi(2) * longest {
+    let least2 = 16.0 * p_error.as_dvec3().length_squared();
+    // The height over an edge is twice the area, |cross|, by its length; the longest edge is no
+    // longer than the others together.
+    let longest2 = 2.0 * (e1.length_squared() + e2.length_squared());
+    let (area2, needed) = (cross.length_squared(), least2 * longest2);
+    let clear = |b: f64| b > 0.0 && b * b * area2 >= needed;
+    if clear(b[0]) && clear(b[1]) && clear(b[2]) {
         return p;
     }
+    inset_by(p, b, [e1, e2, cross], least2.sqrt())
+}
+
+/// Where a point is near an edge: few are.
+#[cold]
+fn inset_by(p: DVec3, b: [f64; 3], [e1, e2, cross]: [DVec3; 3], least: f64) -> DVec3 {
     let mut moved = p;
     for (weight, edge) in b.into_iter().zip([e2 - e1, -e2, e1]) {
         let inward = cross.cross(edge);

@@ -162,8 +162,10 @@ impl TriangleBlock {
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize & (LANES - 1);
             candidates &= candidates - 1;
-            let sheared = [a, b, c].map(|p| (f64::from(p.0[lane]), f64::from(p.1[lane])));
-            if let Some(hit) = self.decide(ray, lane, sheared, t_max) {
+            // Not by `map` over the corners, which is not inlined.
+            let of_lane = |v: Vec4| f64::from(v.to_array()[lane]);
+            let at = |p: Corner| (of_lane(p.0), of_lane(p.1));
+            if let Some(hit) = self.decide(ray, lane, [at(a), at(b), at(c)], t_max) {
                 let (closest, stop) = found(hit);
                 if stop {
                     return true;
@@ -197,8 +199,10 @@ impl TriangleBlock {
         let o = f64::from(ray.origin[2].x);
         let depth = |i: usize| (f64::from(self.vertices[i][k][lane]) - o) * ray.inv_dk;
         let (z0, z1, z2) = (depth(0), depth(1), depth(2));
-        let t_far = z0.max(z1).max(z2);
-        let t_near = z0.min(z1).min(z2);
+        // Vertices are numbers: the comparisons need not look for NaN, as `max` does.
+        let greater = |a: f64, b: f64| if a > b { a } else { b };
+        let less = |a: f64, b: f64| if a < b { a } else { b };
+        let (t_far, t_near) = (greater(greater(z0, z1), z2), less(less(z0, z1), z2));
         if !(t_far > 0.0 && t_near <= f64::from(t_max)) {
             return None;
         }

@@ -147,6 +147,13 @@ pub struct QuadLight {
     halves: [TriangleLight; 2],
 }
 
+/// Not by `map` over the halves, which is not inlined.
+#[inline]
+fn solid_angles([first, second]: &[Option<SphericalTriangle>; 2]) -> [f32; 2] {
+    let of = |half: &Option<SphericalTriangle>| half.as_ref().map_or(0.0, |s| s.solid_angle);
+    [of(first), of(second)]
+}
+
 impl QuadLight {
     /// The middle of its halves' centroids.
     pub fn center(&self) -> Vec3A {
@@ -194,7 +201,7 @@ impl QuadLight {
     #[inline]
     pub fn sample_li(&self, p: Vec3A, u: Vec2) -> Option<LightSample> {
         let seen = self.seen_from(p);
-        let omega = seen.map(|s| s.map_or(0.0, |s| s.solid_angle));
+        let omega = solid_angles(&seen);
         let total = omega[0] + omega[1];
         let x = u.x * total;
         let (half, u_x) = if x < omega[0] {
@@ -209,7 +216,7 @@ impl QuadLight {
     /// See [`super::Light::pdf_li`].
     #[inline]
     pub fn pdf_li(&self, p: Vec3A) -> f32 {
-        let omega = self.seen_from(p).map(|s| s.map_or(0.0, |s| s.solid_angle));
+        let omega = solid_angles(&self.seen_from(p));
         let total = omega[0] + omega[1];
         if total > 0.0 { 1.0 / total } else { 0.0 }
     }

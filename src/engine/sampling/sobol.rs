@@ -145,8 +145,9 @@ impl<'a> SobolSampler<'a> {
     fn scrambled(&self, set: u32) -> Int4 {
         let points = unscrambled(self.index_rev, &GROUPS[set as usize]);
         let key = set ^ self.block_scramble().wrapping_mul(0x9c8f_2d3b);
-        let lanes = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|lane| lane ^ key);
-        owen_scramble_int4_rev(points, hash_int4(lanes.into()))
+        let mut lanes = Int4::from([0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8]);
+        lanes ^= [key; 4].into();
+        owen_scramble_int4_rev(points, hash_int4(lanes))
     }
 
     /// Evaluates the four dimensions around the current one, as `sobol_burley::sample_4d` does.
