@@ -225,7 +225,7 @@ fn flux_on_a_receiver_is_the_same_from_either_end() {
         // The normal faces the lights; the sky shines on it from below as well as they do.
         let n = -e1.cross(e2).normalize();
         if lit.lights.get(0).is_infinite() {
-            // A scene that holds the receiver: its bounding sphere must be lit in full.
+            // A scene that holds the receiver: its silhouette must be lit in full.
             lit = infinite_with_receiver(name);
         }
         let light = lit.lights.get(0);
