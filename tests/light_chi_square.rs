@@ -321,7 +321,7 @@ fn light_from_infinity_is_spread_evenly_over_the_shadow_of_the_scene() {
         let half = 0.5 * size;
         let corners = [-half, half, Vec3::new(half.x, -half.y, -half.z)];
         let lit = support::mesh(&corners, &[[0, 1, 2]]);
-        let silhouette = Silhouette::of(&lit.geometry);
+        let silhouette = Silhouette::of_box(&lit.geometry);
         // A little larger than the scene, and never flat.
         let half = half.as_dvec3() + 1e-3 * half.as_dvec3().length();
         for (i, d) in directions.into_iter().enumerate() {
@@ -358,6 +358,30 @@ fn light_from_infinity_is_spread_evenly_over_the_shadow_of_the_scene() {
         }
     }
     assert_family(&p_values);
+}
+
+/// Far from the origin the centre of the scene is rounded by as much as the scene is large.
+#[test]
+fn light_from_infinity_reaches_all_of_a_scene_far_from_the_origin() {
+    let mut next = numbers(800);
+    for k in 0..2000 {
+        let (u, v) = next();
+        let offset = 10.0_f32.powi(k % 8);
+        let low = (Vec3::new(u.x, u.y, v.x) - 0.5) * offset;
+        let size = Vec3::new(1.0 + v.y, 1.0 + u.y, 1.5);
+        let corners = [low, low + size, Vec3::new(low.x + size.x, low.y, low.z)];
+        let lit = support::mesh(&corners, &[[0, 1, 2]]);
+        let silhouette = Silhouette::of_box(&lit.geometry);
+        let (min, max) = (lit.geometry.bounds().min, lit.geometry.bounds().max);
+        let ends = [Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON / 2.0)];
+        for (axis, d) in [Vec3A::X, Vec3A::Y, Vec3A::NEG_Z].into_iter().enumerate() {
+            let [a, b] = ends.map(|u| silhouette.enter(d, u).o);
+            for side in (0..3).filter(|side| *side != axis) {
+                let (first, last) = (a[side].min(b[side]), a[side].max(b[side]));
+                assert!(first <= min[side] && max[side] <= last, "{low} {size} {d}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -283,7 +283,7 @@ fn infinite_with_receiver(name: &str) -> support::Lit {
         material: 0,
     };
     let (geometry, _) = Geometry::build(&[input], &[]);
-    let lights = Lights::build(&[desc], &[], &geometry, Silhouette::of(&geometry)).unwrap();
+    let lights = Lights::build(&[desc], &[], &geometry, Silhouette::of_box(&geometry)).unwrap();
     support::Lit { geometry, lights }
 }
 
@@ -341,7 +341,7 @@ fn lights_of_any_power_are_chosen_with_probabilities_that_sum_to_one() {
     };
     for n in [1, 25, 100_000] {
         let descs: Vec<_> = (0..n).map(desc).collect();
-        let lights = Lights::build(&descs, &[], &geometry, Silhouette::of(&geometry)).unwrap();
+        let lights = Lights::build(&descs, &[], &geometry, Silhouette::of_box(&geometry)).unwrap();
         let dark = (0..n).filter(|i| i % 7 == 3).count();
         assert_eq!(lights.len(), n as usize - dark);
         let pmfs: Vec<f32> = (0..lights.len() as u32).map(|id| lights.pmf(id)).collect();
@@ -352,7 +352,7 @@ fn lights_of_any_power_are_chosen_with_probabilities_that_sum_to_one() {
             assert_eq!(pmf, lights.pmf(id));
         }
     }
-    let empty = Lights::build(&[], &[], &geometry, Silhouette::of(&geometry)).unwrap();
+    let empty = Lights::build(&[], &[], &geometry, Silhouette::of_box(&geometry)).unwrap();
     assert!(empty.is_empty() && empty.sample(0.5).is_none() && empty.escaped(Vec3A::X).is_black());
 }
 
@@ -379,7 +379,7 @@ fn environments_refuse_what_is_no_radiance_and_take_a_sun() {
             &[environment(pixels, 4)],
             &[],
             &geometry,
-            Silhouette::of(&geometry),
+            Silhouette::of_box(&geometry),
         )
         .unwrap_err();
         assert!(
@@ -391,7 +391,7 @@ fn environments_refuse_what_is_no_radiance_and_take_a_sun() {
         &[environment(vec![[0.0; 3]; 8], 4)],
         &[],
         &geometry,
-        Silhouette::of(&geometry),
+        Silhouette::of_box(&geometry),
     )
     .unwrap();
     assert!(black.is_empty());
@@ -403,7 +403,7 @@ fn environments_refuse_what_is_no_radiance_and_take_a_sun() {
         &[environment(pixels, 64)],
         &[],
         &geometry,
-        Silhouette::of(&geometry),
+        Silhouette::of_box(&geometry),
     )
     .unwrap();
     let light = lights.get(0);
@@ -427,7 +427,7 @@ fn environment_images_stand_as_documented() {
         &[environment(pixels, 8)],
         &[],
         &geometry,
-        Silhouette::of(&geometry),
+        Silhouette::of_box(&geometry),
     )
     .unwrap();
     let seen = |x: f32, y: f32, z: f32| lights.escaped(Vec3A::new(x, y, z).normalize())[0];

@@ -24,7 +24,7 @@ fn lit(meshes: &[MeshInput<'_>], spheres: &[SphereInput], descs: &[LightDesc]) -
             radiance: RADIANCE,
         })
         .collect();
-    let lights = Lights::build(descs, &emitters, &geometry, Silhouette::of(&geometry)).unwrap();
+    let lights = Lights::build(descs, &emitters, &geometry, Silhouette::of_box(&geometry)).unwrap();
     geometry.set_lights(|prim| lights.of_primitive(prim));
     Lit { geometry, lights }
 }

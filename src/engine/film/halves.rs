@@ -23,6 +23,9 @@
 //!
 //! Errors that are correlated between pixels (photons, splats) count as fewer pixels: the sum is
 //! multiplied by Σ ρ² over lags within a tile (for normal d, Cov(dᵢ², dⱼ²) = 2 Cov(dᵢ, dⱼ)²).
+//! Farther ones are not looked at: the light walks of one pass of `bdpt` and `vcm` are moved alike
+//! for all pixels, and where nearly all of the error is theirs and smooth, the interval is too short
+//! (in simulations without any noise of the eye walks it held in 8 of 10 cases).
 
 use serde::Serialize;
 

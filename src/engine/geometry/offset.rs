@@ -36,8 +36,8 @@ pub fn inset(p: DVec3, b: [f64; 3], [e1, e2, cross]: [DVec3; 3], p_error: Vec3A)
     // The height over an edge is twice the area, |cross|, by its length; the longest edge is no
     // longer than the others together.
     let longest2 = 2.0 * (e1.length_squared() + e2.length_squared());
-    let (area2, needed) = (cross.length_squared(), least2 * longest2);
-    let clear = |b: f64| b > 0.0 && b * b * area2 >= needed;
+    let (cross2, needed) = (cross.length_squared(), least2 * longest2);
+    let clear = |b: f64| b > 0.0 && b * b * cross2 >= needed;
     if clear(b[0]) && clear(b[1]) && clear(b[2]) {
         return p;
     }

@@ -37,10 +37,7 @@ pub const ENTRY: Entry = Entry {
 const PARAMS: &[ParamSpec] = &[
     RADIUS_PARAM,
     ALPHA_PARAM,
-    ParamSpec {
-        default: "2",
-        ..photons_param()
-    },
+    photons_param("2"),
     super::SAMPLER_PARAM,
     ParamSpec {
         name: "roulette",

@@ -88,28 +88,28 @@ pub(super) const ALPHA_PARAM: ParamSpec = ParamSpec {
 };
 
 /// How many photons a pass merges with.
-const PHOTONS_PARAM: ParamSpec = ParamSpec {
-    default: "0.75",
-    ..photons_param()
-};
+const PHOTONS_PARAM: ParamSpec = photons_param("0.75");
 
 /// The same for any algorithm, but for the default.
-pub(super) const fn photons_param() -> ParamSpec {
+pub(super) const fn photons_param(default: &'static str) -> ParamSpec {
     ParamSpec {
         name: "photons",
         kind: ParamKind::Number(0.001, 64.0),
-        default: "",
+        default,
         unit: "a pixel",
         matters: |_| true,
-        doc: "Photons that a pass stores, for every pixel, by as many light paths as that takes, \
-              but no more than 262144. Fewer are quicker where other strategies find the light.",
+        doc: "Photons that a pass stores, about, for every pixel: by as many light paths as that \
+              takes, but at most 4 a pixel and 262144 in all. Fewer are quicker where other \
+              strategies find the light.",
     }
 }
 
 /// Most light paths that one pass stores.
 pub(super) const MAX_PATHS: u64 = 1 << 18;
 /// Light paths that tell how many a number of photons takes.
-const PILOT: u64 = 4096;
+const PILOT: u64 = 1024;
+/// Most light paths a pixel, where few of them leave a photon.
+const MOST_A_PIXEL: f64 = 4.0;
 /// Light paths of one chunk of work.
 const CHUNK: u64 = 1024;
 
@@ -161,40 +161,54 @@ impl PhotonSource {
         (self.radius * f64::from(scene) * shrink) as f32
     }
 
-    /// Light paths of a pass: as many as leave `photons` for every pixel, but no more than
-    /// [`MAX_PATHS`].
-    fn paths(&self, cx: &Pass<'_>) -> u64 {
+    /// Light paths of a pass: as many as leave `photons` for every pixel, within [`MAX_PATHS`] and
+    /// [`MOST_A_PIXEL`].
+    fn paths(&self, cx: &Pass<'_>) -> Result<u64, Cancelled> {
+        let each = match self.yield_of_a_path.get() {
+            Some(each) => *each,
+            None => {
+                let each = self.pilot(cx)?;
+                *self.yield_of_a_path.get_or_init(|| each)
+            }
+        };
         let pixels = cx.camera.size().as_dvec2().element_product();
-        let each = self.yield_of_a_path.get_or_init(|| self.pilot(cx));
-        ((pixels * self.photons / each) as u64).clamp(1, MAX_PATHS)
+        let most = (pixels * MOST_A_PIXEL) as u64;
+        Ok(((pixels * self.photons / each) as u64).clamp(1, most.clamp(1, MAX_PATHS)))
     }
 
-    /// Photons that a light path leaves, by a few of all kinds: it depends on the scene alone, so
-    /// that any pass of any job finds the same.
-    fn pilot(&self, cx: &Pass<'_>) -> f64 {
+    /// Photons that a light path leaves, by some paths of unlimited depth and any class: it depends
+    /// on the scene and on roulette alone, so that any pass of any job finds the same. 1 where none
+    /// is left: no number of paths helps.
+    fn pilot(&self, cx: &Pass<'_>) -> Result<f64, Cancelled> {
         let Ok(plan) = RenderPlan::new(cx.scene, false, &LayerSettings::default()) else {
-            return 1.0;
+            return Ok(1.0);
         };
         let cx = Pass {
             plan: &plan,
             seed: 0,
             ..*cx
         };
-        let (mut list, mut path) = (PhotonList::default(), Subpath::default());
-        let walker = self.walker(&cx);
-        for i in 0..PILOT {
+        let stored = (0..PILOT).into_par_iter().map(|i| {
+            cx.cancel.check()?;
+            let (mut list, mut path) = (PhotonList::default(), Subpath::default());
             let mut sampler = SobolSampler::new(cx.seed, Stream::Preparation, (0, i));
-            let start = walker.from_light(&mut sampler, &mut path, &mut RenderStats::default());
-            if let Some(start) = start {
+            let mut stats = RenderStats::default();
+            let walker = self.walker(&cx);
+            if let Some(start) = walker.from_light(&mut sampler, &mut path, &mut stats) {
                 list.store(&path, &start);
             }
-        }
-        list.len().max(1) as f64 / PILOT as f64
+            Ok(list.len() as u64)
+        });
+        let stored: u64 = stored.sum::<Result<u64, Cancelled>>()?;
+        Ok(match stored {
+            0 => 1.0,
+            _ => stored as f64 / PILOT as f64,
+        })
     }
 
     /// Traces the light paths of a pass.
     pub(super) fn trace(&self, cx: &Pass<'_>) -> Result<(PhotonGrid, RenderStats), Cancelled> {
-        let paths = self.paths(cx);
+        let paths = self.paths(cx)?;
         let chunks = (0..paths.div_ceil(CHUNK)).into_par_iter();
         let done: Result<Vec<_>, Cancelled> = chunks
             .map(|c| {
@@ -220,7 +234,10 @@ impl PhotonSource {
         let SampleId::MergedPath { path: number, .. } = *sample else {
             return None;
         };
-        let paths = self.paths(cx);
+        let paths = match self.paths(cx) {
+            Ok(paths) => paths,
+            Err(cancelled) => return Some(Err(cancelled.into())),
+        };
         if number >= paths {
             let last = paths - 1;
             let why = format!("a pass of this size has the light paths 0 to {last}");

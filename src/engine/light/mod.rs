@@ -96,7 +96,8 @@ pub struct EmissionSample {
 }
 
 impl EmissionSample {
-    /// The flux in W that this sample stands for, the estimator of [`Light::power`].
+    /// The flux in W that this sample stands for, the estimator of [`Light::power`] but for
+    /// images at infinity.
     #[inline]
     pub fn flux(&self) -> Rgb {
         let cos = self.n.map_or(1.0, |n| n.dot(self.ray.d).abs());
@@ -214,7 +215,8 @@ impl Light {
         matches!(self, Self::Directional(_) | Self::Environment(_))
     }
 
-    /// Emitted flux in W; for lights at infinity the flux through the scene's silhouette.
+    /// Emitted flux in W; of lights at infinity that through the scene's
+    /// silhouette, of images as if they were alike all around.
     pub fn power(&self) -> Rgb {
         match self {
             Self::Triangle(light) => light.power(),

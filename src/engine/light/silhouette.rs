@@ -6,12 +6,14 @@ use glam::{Vec2, Vec3A};
 
 use crate::engine::geometry::{Geometry, Ray};
 use crate::engine::math::Frame;
-use crate::engine::math::float::ONE_MINUS_EPSILON;
+use crate::engine::math::float::{MACHINE_EPSILON, ONE_MINUS_EPSILON};
 use crate::engine::sampling::warp::sample_unit_disk;
 
-/// Thickness that a flat scene is given, of its radius; others grow as little, so that rounding
-/// leaves no corner in the dark.
+/// How far the box stands off the surfaces, of the scene's radius: a flat scene has a shadow along
+/// its plane, too.
 const PADDING: f32 = 1e-3;
+/// Roundings of a ray's origin, beside which the box still covers the scene.
+const ROUNDINGS: f32 = 4.0 * MACHINE_EPSILON;
 
 /// The shape around the scene that rays from infinity are aimed at.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +28,7 @@ pub struct Silhouette {
 impl Silhouette {
     /// The sphere around all surfaces; of radius 1 where there are none, or only one of no extent.
     /// A medium may fill it.
-    pub fn sphere(geometry: &Geometry) -> Self {
+    pub fn of_sphere(geometry: &Geometry) -> Self {
         let (center, radius) = geometry.bounding_sphere();
         Self {
             center,
@@ -37,12 +39,15 @@ impl Silhouette {
 
     /// The box around all surfaces, whose shadow is smaller: up to a half in a cube, and without
     /// limit in a flat scene.
-    pub fn of(geometry: &Geometry) -> Self {
-        let sphere = Self::sphere(geometry);
+    pub fn of_box(geometry: &Geometry) -> Self {
+        let sphere = Self::of_sphere(geometry);
         let bounds = geometry.bounds();
         let half = (!bounds.is_empty()).then(|| {
-            let half = 0.5 * bounds.max - 0.5 * bounds.min;
-            half + Vec3A::splat(PADDING * sphere.radius)
+            // From the centre as it was rounded: far from the origin that is no small matter.
+            let c = sphere.center.as_dvec3();
+            let (up, down) = (bounds.max.as_dvec3() - c, c - bounds.min.as_dvec3());
+            let rounding = ROUNDINGS * (sphere.center.abs() + Vec3A::splat(sphere.radius));
+            up.max(down).as_vec3a() + rounding + Vec3A::splat(PADDING * sphere.radius)
         });
         Self { half, ..sphere }
     }
@@ -99,6 +104,7 @@ impl Silhouette {
             x -= shadows[side];
             side += 1;
         }
+        // Rounding may lead past the last shadow, or to one of no size: the end, then.
         let x = (x / shadows[side]).min(ONE_MINUS_EPSILON);
         let (a, b) = ((side + 1) % 3, (side + 2) % 3);
         let mut on_box = Vec3A::ZERO;

@@ -105,11 +105,9 @@ fn enter(
 ) -> Option<Emitted> {
     let d = sample.ray.d;
     let (through, pdf) = map.sample_along(d, u_group, u_pos)?;
-    // Back to the plane in which all rays of this direction start, outside the scene.
+    // Back to the plane that touches the sphere around the scene from behind.
     let (center, radius) = scene.geometry.bounding_sphere();
-    let start = (sample.ray.o - through)
-        .dot(d)
-        .min((center - through).dot(d) - radius);
+    let start = (center - through).dot(d) - radius;
     let flux = sample.radiance / pdf / sample.pdf_dir;
     Some(Emitted {
         ray: Ray::new(through + d * start, d),

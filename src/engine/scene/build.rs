@@ -37,8 +37,8 @@ impl Scene {
         let (emitters, covered) = emitters(desc, &order, &geometry);
         // A medium everywhere ends at the sphere around the scene.
         let silhouette = match desc.media.everywhere {
-            Some(_) => Silhouette::sphere(&geometry),
-            None => Silhouette::of(&geometry),
+            Some(_) => Silhouette::of_sphere(&geometry),
+            None => Silhouette::of_box(&geometry),
         };
         let lights = Lights::build(&desc.lights, &emitters, &geometry, silhouette)?;
         geometry.set_lights(|prim| lights.of_primitive(prim));
