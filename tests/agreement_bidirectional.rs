@@ -14,7 +14,7 @@ fn bdpt_agrees_on_cornell_diffuse() {
 
 #[test]
 fn bdpt_agrees_on_cornell_glass() {
-    assert_agrees_with_reference("cornell-glass", "bdpt", &[], 12, &LAYERS);
+    assert_agrees_with_reference("cornell-glass", "bdpt", &[], 48, &LAYERS);
 }
 
 #[test]

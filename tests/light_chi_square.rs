@@ -330,13 +330,13 @@ fn light_from_infinity_is_spread_evenly_over_the_shadow_of_the_scene() {
             let (s, t) = axis.normalize().any_orthonormal_pair();
             let extent = half.length();
             let place = |x: f64| (x - 0.5) * 2.0 * extent;
-            let fine = 100 * BINS;
+            let fine = 400 * BINS;
             let mut shadow = vec![0.0; BINS * BINS];
             for y in 0..fine {
                 for x in 0..fine {
                     let at = |i: usize| place((i as f64 + 0.5) / fine as f64);
                     if meets_box(s * at(x) + t * at(y), axis, half) {
-                        shadow[y / 100 * BINS + x / 100] += 1.0;
+                        shadow[y / 400 * BINS + x / 400] += 1.0;
                     }
                 }
             }

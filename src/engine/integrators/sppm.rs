@@ -37,7 +37,7 @@ pub const ENTRY: Entry = Entry {
 const PARAMS: &[ParamSpec] = &[
     RADIUS_PARAM,
     ALPHA_PARAM,
-    photons_param("2"),
+    photons_param("4"),
     super::SAMPLER_PARAM,
     ParamSpec {
         name: "roulette",
