@@ -283,7 +283,7 @@ fn infinite_with_receiver(name: &str) -> support::Lit {
         material: 0,
     };
     let (geometry, _) = Geometry::build(&[input], &[]);
-    let lights = Lights::build(&[desc], &[], &geometry, Silhouette::of_box(&geometry)).unwrap();
+    let lights = lights_of(&[desc], &geometry).unwrap();
     support::Lit { geometry, lights }
 }
 
@@ -341,7 +341,7 @@ fn lights_of_any_power_are_chosen_with_probabilities_that_sum_to_one() {
     };
     for n in [1, 25, 100_000] {
         let descs: Vec<_> = (0..n).map(desc).collect();
-        let lights = Lights::build(&descs, &[], &geometry, Silhouette::of_box(&geometry)).unwrap();
+        let lights = lights_of(&descs, &geometry).unwrap();
         let dark = (0..n).filter(|i| i % 7 == 3).count();
         assert_eq!(lights.len(), n as usize - dark);
         let pmfs: Vec<f32> = (0..lights.len() as u32).map(|id| lights.pmf(id)).collect();
@@ -352,8 +352,13 @@ fn lights_of_any_power_are_chosen_with_probabilities_that_sum_to_one() {
             assert_eq!(pmf, lights.pmf(id));
         }
     }
-    let empty = Lights::build(&[], &[], &geometry, Silhouette::of_box(&geometry)).unwrap();
+    let empty = lights_of(&[], &geometry).unwrap();
     assert!(empty.is_empty() && empty.sample(0.5).is_none() && empty.escaped(Vec3A::X).is_black());
+}
+
+/// Lights without surface around `geometry`.
+fn lights_of(descs: &[LightDesc], geometry: &Geometry) -> Result<Lights, String> {
+    Lights::build(descs, &[], geometry, Silhouette::of_box(geometry))
 }
 
 fn environment(pixels: Vec<[f32; 3]>, width: usize) -> LightDesc {
@@ -375,13 +380,7 @@ fn environments_refuse_what_is_no_radiance_and_take_a_sun() {
     for bad in [f32::NAN, f32::INFINITY, -1.0] {
         let mut pixels = vec![[1.0; 3]; 8];
         pixels[6][1] = bad;
-        let error = Lights::build(
-            &[environment(pixels, 4)],
-            &[],
-            &geometry,
-            Silhouette::of_box(&geometry),
-        )
-        .unwrap_err();
+        let error = lights_of(&[environment(pixels, 4)], &geometry).unwrap_err();
         assert!(
             error.contains("sky.exr") && error.contains("column 2, row 1"),
             "{error}"
@@ -399,13 +398,7 @@ fn environments_refuse_what_is_no_radiance_and_take_a_sun() {
     // One texel of 1e6 in a sky of 1: almost all samples see it, the estimate has no noise.
     let mut pixels = vec![[1.0; 3]; 64 * 32];
     pixels[9 * 64 + 20] = [1e6; 3];
-    let lights = Lights::build(
-        &[environment(pixels, 64)],
-        &[],
-        &geometry,
-        Silhouette::of_box(&geometry),
-    )
-    .unwrap();
+    let lights = lights_of(&[environment(pixels, 64)], &geometry).unwrap();
     let light = lights.get(0);
     let total = estimate(50_000, 90, |u, _| {
         let s = light.sample_li(Vec3A::ZERO, u).unwrap();
@@ -423,13 +416,7 @@ fn environment_images_stand_as_documented() {
     for (i, p) in pixels.iter_mut().enumerate() {
         *p = [i as f32; 3];
     }
-    let lights = Lights::build(
-        &[environment(pixels, 8)],
-        &[],
-        &geometry,
-        Silhouette::of_box(&geometry),
-    )
-    .unwrap();
+    let lights = lights_of(&[environment(pixels, 8)], &geometry).unwrap();
     let seen = |x: f32, y: f32, z: f32| lights.escaped(Vec3A::new(x, y, z).normalize())[0];
     // Row 1 of 4 is above the horizon; the middle of the image lies towards −z, its right to +x.
     assert_eq!(seen(0.1, 0.2, -1.0), 12.0);
