@@ -1,7 +1,9 @@
 //! Rays that leave a surface: none meets it again, none passes a gap wider than stated.
 
 use glam::{Quat, Vec3, Vec3A};
-use lightscope::engine::geometry::{Geometry, MeshInput, Ray, SphereInput, SurfaceInteraction};
+use lightscope::engine::geometry::{
+    Geometry, MeshInput, NO_TRIANGLE, Ray, SphereInput, SurfaceInteraction,
+};
 use lightscope::engine::math::Frame;
 use lightscope::engine::sampling::sampler::Sampler;
 use lightscope::engine::sampling::warp::sample_cosine_hemisphere;
@@ -37,7 +39,7 @@ fn spawn_failures(size: f32, offset: f32, gap: f32, trials: u32) -> (u32, u32) {
         let at = alone.interaction(&ray, &hit);
         let d = frame.to_world(sample_cosine_hemisphere(s.next_2d()));
         for d in [d, -d] {
-            own += u32::from(alone.intersect(&at.spawn_ray(d)).is_some());
+            own += u32::from(alone.intersect(&at.spawn_ray(d).against_all()).is_some());
         }
         leaked += u32::from(both.intersect(&at.spawn_ray(n)).is_none());
     }
@@ -102,7 +104,7 @@ fn two_surfaces_see_each_other() {
             let free = |at: &SurfaceInteraction, d: Vec3A| {
                 !geometry.occluded(&Ray {
                     t_max: 0.9 * distance,
-                    ..at.spawn_ray(d)
+                    ..at.spawn_ray(d).against_all()
                 })
             };
             if !free(&from, towards) || !free(&to, -towards) {
@@ -110,7 +112,8 @@ fn two_surfaces_see_each_other() {
             }
             pairs += 1;
             let target = to.spawn_ray(-towards).o;
-            blocked += u32::from(geometry.occluded(&from.spawn_ray_to(target)));
+            blocked += u32::from(geometry.occluded(&from.spawn_ray_to(target).against_all()));
+            blocked += u32::from(geometry.occluded(&from.spawn_ray_to_surface(&to)));
         }
         assert!(pairs > 10_000);
         assert_eq!(blocked, 0, "of {pairs} at scale {scale}, centre {center}");
@@ -156,4 +159,49 @@ fn no_ray_slips_out_where_walls_meet() {
             );
         }
     }
+}
+
+#[test]
+fn a_ray_is_clear_of_what_it_leaves_and_ends_on_and_of_nothing_else() {
+    let (corners, triangles) = cube(1.0, Vec3::ZERO);
+    let (room, _) = build(&corners, &triangles);
+    let mut s = sampler(11);
+    for _ in 0..1000 {
+        let ray = Ray::new(Vec3A::from(0.5 * point(&mut s)), direction(&mut s));
+        let hit = room.intersect(&ray).expect("the box is closed");
+        let at = room.interaction(&ray, &hit);
+        let through = |clear_of| Ray { clear_of, ..ray };
+        // What it is clear of it passes, first or second.
+        for clear_of in [[hit.prim, NO_TRIANGLE], [NO_TRIANGLE, hit.prim]] {
+            assert_eq!(room.intersect(&through(clear_of)), None);
+            assert!(!room.occluded(&through(clear_of)));
+        }
+        let others = [(hit.prim + 1) % 12, (hit.prim + 2) % 12];
+        assert_eq!(room.intersect(&through(others)), Some(hit));
+
+        let back = at.spawn_ray(at.wo);
+        assert_eq!(back.clear_of, [hit.prim, NO_TRIANGLE]);
+        let hit = room.intersect(&back).expect("the box is closed");
+        let opposite = room.interaction(&back, &hit);
+        let between = at.spawn_ray_to_surface(&opposite);
+        assert_eq!(between.clear_of, [at.prim, opposite.prim]);
+        assert!(!room.occluded(&between));
+    }
+}
+
+/// Numbers of spheres follow those of triangles: a sphere is met again by rays that leave it.
+#[test]
+fn no_ray_is_clear_of_a_sphere() {
+    let ball = SphereInput {
+        center: Vec3::ZERO,
+        radius: 1.0,
+        inward: false,
+        material: 0,
+    };
+    let (geometry, _) = Geometry::build(&[], &[ball]);
+    let within = Ray::new(Vec3A::ZERO, Vec3A::Z);
+    let hit = geometry.intersect(&within).expect("the ball is closed");
+    let at = geometry.interaction(&within, &hit);
+    assert!(geometry.intersect(&at.spawn_ray(-Vec3A::Z)).is_some());
+    assert!(geometry.intersect(&at.spawn_ray(Vec3A::Z)).is_none());
 }

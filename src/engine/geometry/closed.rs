@@ -1,5 +1,5 @@
-//! What rays cannot do, so that a render can count it: meet the flat surface that they leave, or
-//! slip out of a closed one.
+//! What rays cannot do, so that a render can count it: meet the side of a sphere that they leave, or
+//! slip out of a closed surface. Of the triangle that they leave they are kept clear.
 
 use std::collections::HashMap;
 

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3A};
 
 use super::closed::Departure;
 use super::offset::offset_origin;
-use super::ray::Ray;
+use super::ray::{NO_TRIANGLE, Ray};
 
 /// A point of a surface, seen from `wo`.
 ///
@@ -21,7 +21,8 @@ pub struct SurfaceInteraction {
     pub n_g: Vec3A,
     /// Unit shading normal.
     pub n_s: Vec3A,
-    /// Texture coordinates; v = 0 at the bottom of an image.
+    /// Texture coordinates; v = 0 at the bottom of an image. Of spheres only where a material of the
+    /// scene looks them up.
     pub uv: Vec2,
     /// Unit direction the ray came from.
     pub wo: Vec3A,
@@ -71,20 +72,31 @@ impl SurfaceInteraction {
     /// origin.
     #[inline]
     pub fn spawn_ray(&self, d: Vec3A) -> Ray {
-        Ray::new(offset_origin(self.p, self.p_error, self.n_g, d), d)
+        let o = offset_origin(self.p, self.p_error, self.n_g, d);
+        Ray {
+            clear_of: [self.prim, NO_TRIANGLE],
+            ..Ray::new(o, d)
+        }
     }
 
     /// A ray to `target`, a point that is moved off its own surface already; it ends short of it.
     #[inline]
     pub fn spawn_ray_to(&self, target: Vec3A) -> Ray {
         let o = offset_origin(self.p, self.p_error, self.n_g, target - self.p);
-        Ray::between(o, target)
+        Ray {
+            clear_of: [self.prim, NO_TRIANGLE],
+            ..Ray::between(o, target)
+        }
     }
 
     /// A ray to the point `other` of another surface, clear of both.
     #[inline]
     pub fn spawn_ray_to_surface(&self, other: &Self) -> Ray {
         let toward = self.p - other.p;
-        self.spawn_ray_to(offset_origin(other.p, other.p_error, other.n_g, toward))
+        let target = offset_origin(other.p, other.p_error, other.n_g, toward);
+        Ray {
+            clear_of: [self.prim, other.prim],
+            ..self.spawn_ray_to(target)
+        }
     }
 }

@@ -21,6 +21,6 @@ pub use closed::{Departure, RayFault};
 pub use interaction::SurfaceInteraction;
 pub use mesh::{DropReport, MAX_COORDINATE, MeshInput};
 pub use offset::{inset, offset_origin};
-pub use ray::{Hit, Ray};
+pub use ray::{Hit, NO_TRIANGLE, Ray};
 pub use sphere::{Sphere, SphereInput};
 pub use surfaces::Geometry;

@@ -11,7 +11,13 @@ pub struct Ray {
     pub d: Vec3A,
     /// Largest distance of interest, exclusive; infinite for closest-hit queries.
     pub t_max: f32,
+    /// Triangles that it is known not to meet: one that it leaves, one that it ends on. They are
+    /// flat. [`NO_TRIANGLE`] stands for none; numbers of spheres change nothing.
+    pub clear_of: [u32; 2],
 }
+
+/// No triangle, in [`Ray::clear_of`].
+pub const NO_TRIANGLE: u32 = u32::MAX;
 
 impl Ray {
     /// A ray without end.
@@ -21,6 +27,7 @@ impl Ray {
             o,
             d,
             t_max: f32::INFINITY,
+            clear_of: [NO_TRIANGLE; 2],
         }
     }
 
@@ -35,6 +42,16 @@ impl Ray {
             // where it begins, whatever its direction.
             d: if t > 0.0 { to / t } else { Vec3A::X },
             t_max: t * (1.0 - SHADOW_SHORTENING),
+            clear_of: [NO_TRIANGLE; 2],
+        }
+    }
+
+    /// The same ray, tested against every triangle: whether origins do by themselves.
+    #[must_use]
+    pub fn against_all(self) -> Self {
+        Self {
+            clear_of: [NO_TRIANGLE; 2],
+            ..self
         }
     }
 

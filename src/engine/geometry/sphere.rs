@@ -41,9 +41,6 @@ pub struct SpherePoint {
     pub p_error: Vec3A,
     /// Unit normal of the front side.
     pub n: Vec3A,
-    /// Longitude and latitude in [0, 1]²: v is 0 at the south pole (−y); u is ½ towards +z and
-    /// grows towards +x, so that a texture reads the right way round from outside.
-    pub uv: Vec2,
 }
 
 impl Sphere {
@@ -51,21 +48,21 @@ impl Sphere {
     /// where it starts inside.
     ///
     /// In f64, with the discriminant from the vector between the centre and the ray's nearest
-    /// point (Hearn and Baker; *Physically Based Rendering*, 4th ed., 6.2.2): r² − |perpendicular|²
-    /// loses nothing to cancellation when the origin is far away.
+    /// point (Hearn and Baker; *Physically Based Rendering*, 4th ed., 6.2.2), which o × d is |d|
+    /// times as long as: r² − |perpendicular|² loses nothing to cancellation when the origin is far
+    /// away. What is missed costs no division.
     #[inline]
-    pub fn intersect(&self, ray: &Ray) -> Option<f32> {
-        let d = ray.d.as_dvec3();
-        let o = ray.o.as_dvec3() - self.center.as_dvec3();
+    pub fn intersect(&self, o: DVec3, d: DVec3) -> Option<f32> {
+        let o = o - self.center.as_dvec3();
         let r = f64::from(self.radius);
         let a = d.length_squared();
-        let b = o.dot(d);
-        let perpendicular = o - d * (b / a);
-        let discriminant = (r * r - perpendicular.length_squared()) * a;
-        if discriminant.is_nan() || discriminant < 0.0 {
+        let discriminant = r * r * a - o.cross(d).length_squared();
+        // Not so for NaN.
+        if !(discriminant >= 0.0) {
             return None;
         }
         // One root by the sum that does not cancel, the other by Vieta.
+        let b = o.dot(d);
         let q = -b - discriminant.sqrt().copysign(b);
         let (t0, t1) = (q / a, (o.length_squared() - r * r) / q);
         let (near, far) = if t0 < t1 { (t0, t1) } else { (t1, t0) };
@@ -89,11 +86,18 @@ impl Sphere {
             p,
             p_error,
             n: if self.inward { -n } else { n },
-            uv: Vec2::new(
-                0.5 + n.x.atan2(n.z) * (0.5 * FRAC_1_PI),
-                (-n.y).clamp(-1.0, 1.0).acos() * FRAC_1_PI,
-            ),
         }
+    }
+
+    /// Texture coordinates where the normal is `n`: longitude and latitude in [0, 1]². v is 0 at
+    /// the south pole (−y); u is ½ towards +z and grows towards +x, so that a texture reads the
+    /// right way round from outside.
+    pub fn uv(&self, n: Vec3A) -> Vec2 {
+        let n = if self.inward { -n } else { n };
+        Vec2::new(
+            0.5 + n.x.atan2(n.z) * (0.5 * FRAC_1_PI),
+            (-n.y).clamp(-1.0, 1.0).acos() * FRAC_1_PI,
+        )
     }
 
     /// The box around it, rounded outward.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
 use super::accel;
 use super::bounds::Bounds3;
@@ -34,6 +34,8 @@ pub struct Geometry {
     /// By primitive; empty while no surface emits.
     lights: Vec<Option<u32>>,
     bounds: Bounds3,
+    /// Nothing asks for texture coordinates.
+    untextured: bool,
     /// By triangle; made when it is asked for first.
     shells: OnceLock<Vec<Shell>>,
 }
@@ -74,6 +76,7 @@ impl Geometry {
             hidden,
             lights: Vec::new(),
             bounds,
+            untextured: false,
             shells: OnceLock::new(),
         };
         (geometry, report)
@@ -95,13 +98,18 @@ impl Geometry {
     pub fn interaction(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         let light = self.light(hit.prim);
         if let Some(index) = self.sphere_index(hit.prim) {
-            let point = self.tree.spheres[index].point(ray, hit.t);
+            let sphere = &self.tree.spheres[index];
+            let point = sphere.point(ray, hit.t);
             return SurfaceInteraction {
                 p: point.p,
                 p_error: point.p_error,
                 n_g: point.n,
                 n_s: point.n,
-                uv: point.uv,
+                uv: if self.untextured {
+                    Vec2::ZERO
+                } else {
+                    sphere.uv(point.n)
+                },
                 wo: -ray.d,
                 t: hit.t,
                 material: self.sphere_materials[index],
@@ -130,6 +138,12 @@ impl Geometry {
         if self.lights.iter().all(Option::is_none) {
             self.lights = Vec::new();
         }
+    }
+
+    /// Leaves out the texture coordinates of spheres, which cost more than the point: no material
+    /// looks them up.
+    pub fn without_textures(&mut self) {
+        self.untextured = true;
     }
 
     /// The light a primitive belongs to.
@@ -214,7 +228,8 @@ impl Geometry {
     }
 
     /// Whether a ray that left at `left` may not meet what it left again, but did at `si`. A flat
-    /// triangle is never met again; a sphere is, from within to within.
+    /// triangle is never met again, nor tested where rays know it ([`Ray::clear_of`]); a sphere is,
+    /// from within to within.
     #[cold]
     pub fn self_hit(&self, left: Departure, si: &SurfaceInteraction) -> Option<RayFault> {
         let chord = self.sphere(left.prim).is_some_and(|sphere| {

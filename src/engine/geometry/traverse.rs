@@ -314,7 +314,7 @@ impl Tree {
         };
         let sheared = ShearedRay::new(ray);
         if self.nodes.is_empty() {
-            self.meet_all(ray, &sheared, &mut found);
+            self.meet_all(&sheared, &mut found);
         } else {
             self.descend(ray, &sheared, &mut found);
         }
@@ -323,14 +323,14 @@ impl Tree {
 
     /// Meets everything: quicker than boxes where there is little.
     #[inline]
-    fn meet_all(&self, ray: &Ray, sheared: &ShearedRay, found: &mut Found) {
+    fn meet_all(&self, sheared: &ShearedRay, found: &mut Found) {
         for block in &self.blocks {
             if block.intersect(sheared, found.hit.t, |hit| found.meet(hit)) {
                 return;
             }
         }
         for index in 0..self.spheres.len() {
-            if self.meet_sphere(ray, index, found) {
+            if self.meet_sphere(sheared, index, found) {
                 return;
             }
         }
@@ -345,7 +345,7 @@ impl Tree {
         loop {
             if child.is_leaf() {
                 let done = if child.is_sphere() {
-                    self.meet_sphere(ray, child.index(), found)
+                    self.meet_sphere(sheared, child.index(), found)
                 } else {
                     // Only what is no ray, with a direction that is 0 or NaN, meets an empty slot.
                     let Some(block) = self.blocks.get(child.index()) else {
@@ -378,8 +378,8 @@ impl Tree {
 
     /// Whether the search is over with sphere `index`.
     #[inline]
-    fn meet_sphere(&self, ray: &Ray, index: usize, found: &mut Found) -> bool {
-        let Some(t) = self.spheres[index].intersect(ray) else {
+    fn meet_sphere(&self, ray: &ShearedRay, index: usize, found: &mut Found) -> bool {
+        let Some(t) = self.spheres[index].intersect(ray.o, ray.d) else {
             return false;
         };
         let (prim, u, v) = (self.first_sphere + index as u32, 0.0, 0.0);

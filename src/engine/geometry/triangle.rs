@@ -77,9 +77,11 @@ pub struct ShearedRay {
     sign: Vec4,
     /// The size of that component.
     dk: f32,
-    o: DVec3,
-    d: DVec3,
+    pub(super) o: DVec3,
+    pub(super) d: DVec3,
     inv_dk: f64,
+    /// As in [`Ray`].
+    clear_of: [u32; 2],
 }
 
 impl ShearedRay {
@@ -101,6 +103,7 @@ impl ShearedRay {
             o: ray.o.as_dvec3(),
             d: ray.d.as_dvec3(),
             inv_dk: 1.0 / f64::from(d[z]),
+            clear_of: ray.clear_of,
         }
     }
 }
@@ -162,6 +165,10 @@ impl TriangleBlock {
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize & (LANES - 1);
             candidates &= candidates - 1;
+            // Where a ray begins or ends it passes the first test.
+            if ray.clear_of.contains(&self.prims[lane]) {
+                continue;
+            }
             // Not by `map` over the corners, which is not inlined.
             let of_lane = |v: Vec4| f64::from(v.to_array()[lane]);
             let at = |p: Corner| (of_lane(p.0), of_lane(p.1));

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3A};
 
 use super::silhouette::Silhouette;
 use super::{EmissionSample, LightSample};
+use crate::engine::geometry::NO_TRIANGLE;
 use crate::engine::math::Rgb;
 
 /// Parallel light.
@@ -38,6 +39,7 @@ impl DirectionalLight {
             radiance: self.irradiance,
             pdf_dir: 1.0,
             is_delta: true,
+            prim: NO_TRIANGLE,
         }
     }
 

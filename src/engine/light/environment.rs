@@ -7,6 +7,7 @@ use glam::{Quat, Vec2, Vec3A};
 
 use super::silhouette::Silhouette;
 use super::{EmissionSample, LightSample};
+use crate::engine::geometry::NO_TRIANGLE;
 use crate::engine::math::Rgb;
 use crate::engine::math::distribution::Discrete2d;
 use crate::engine::math::float::safe_sqrt;
@@ -146,6 +147,7 @@ impl EnvironmentLight {
             radiance,
             pdf_dir,
             is_delta: false,
+            prim: NO_TRIANGLE,
         })
     }
 

@@ -68,6 +68,22 @@ pub struct LightSample {
     pub pdf_dir: f32,
     /// Whether no other strategy can find this direction: point, spot and directional lights.
     pub is_delta: bool,
+    /// The triangle that it is a point of, as in [`Ray::clear_of`].
+    pub prim: u32,
+}
+
+impl LightSample {
+    /// The shadow ray from `si`.
+    #[inline]
+    pub fn ray_from(&self, si: &SurfaceInteraction) -> Ray {
+        if !self.distance.is_finite() {
+            return si.spawn_ray(self.wi);
+        }
+        Ray {
+            clear_of: [si.prim, self.prim],
+            ..si.spawn_ray_to(self.target)
+        }
+    }
 }
 
 /// The first vertex and direction of a path from a light.

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3A};
 
 use super::{EmissionSample, LightSample};
-use crate::engine::geometry::Ray;
+use crate::engine::geometry::{NO_TRIANGLE, Ray};
 use crate::engine::math::{Frame, Rgb};
 use crate::engine::sampling::warp::{pdf_cone, pdf_sphere, sample_cone, sample_sphere};
 
@@ -153,6 +153,7 @@ fn sample_at(position: Vec3A, p: Vec3A, intensity: impl Fn(Vec3A) -> Rgb) -> Opt
         radiance,
         pdf_dir: 1.0,
         is_delta: true,
+        prim: NO_TRIANGLE,
     })
 }
 

@@ -79,7 +79,7 @@ impl Lights {
             }
             let triangle = geometry
                 .triangle_vertices(prim)
-                .and_then(|corners| TriangleLight::new(corners, radiance));
+                .and_then(|corners| TriangleLight::new(prim, corners, radiance));
             let quad = previous
                 .zip(triangle)
                 .and_then(|((id, first), second)| Some((id, QuadLight::new(&first, &second)?)));
@@ -126,6 +126,12 @@ impl Lights {
     pub fn sample(&self, u: f32) -> Option<(u32, f32)> {
         let choice = self.selection.as_ref()?.sample(u);
         Some((choice.index as u32, choice.pmf))
+    }
+
+    /// Whether there is more than one: only then [`Lights::sample`] looks at its number.
+    #[inline]
+    pub fn are_several(&self) -> bool {
+        self.lights.len() > 1
     }
 
     /// Chooses a light by its power and draws a point of it for a shadow ray from `p`: the light's

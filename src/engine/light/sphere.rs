@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 
 use super::triangle::emit_from_surface;
 use super::{EmissionSample, LightSample};
-use crate::engine::geometry::offset_origin;
+use crate::engine::geometry::{NO_TRIANGLE, offset_origin};
 use crate::engine::math::float::{gamma, safe_sqrt};
 use crate::engine::math::{Frame, Rgb};
 use crate::engine::sampling::warp::{pdf_cone, sample_sphere};
@@ -123,6 +123,7 @@ impl SphereLight {
             radiance: self.radiance,
             pdf_dir: pdf_cone(max),
             is_delta: false,
+            prim: NO_TRIANGLE,
         })
     }
 
@@ -139,6 +140,7 @@ impl SphereLight {
             radiance: self.radiance,
             pdf_dir,
             is_delta: false,
+            prim: NO_TRIANGLE,
         })
     }
 

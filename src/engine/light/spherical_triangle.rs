@@ -14,6 +14,77 @@ const MIN_SOLID_ANGLE: f32 = 1e-30;
 /// Below this value of 1 + cos of an arc, the arc is taken as the side that is cut.
 const LONG_ARC: f32 = 0.1;
 
+/// A corner seen from a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    to: Vec3A,
+    distance: f32,
+    unit: Vec3A,
+}
+
+impl Sight {
+    /// `corner` seen from `p`.
+    #[inline]
+    pub fn new(corner: Vec3A, p: Vec3A) -> Self {
+        let to = corner - p;
+        let distance = to.length();
+        let unit = to / distance;
+        Self { to, distance, unit }
+    }
+
+    /// 1 + cos of the arc to another.
+    #[inline]
+    pub fn arc(&self, to: &Self) -> f32 {
+        0.5 * (self.unit + to.unit).length_squared()
+    }
+}
+
+/// Half the solid angle of a triangle, as the direction (x, y) in the plane that has it from the x
+/// axis (van Oosterom and Strackee 1983, equation 8).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HalfAngle {
+    x: f32,
+    y: f32,
+}
+
+impl HalfAngle {
+    /// Of the triangle of the corners `v`, with 1 + cos of the arcs 01, 02 and 12; `normal` is
+    /// (v1 − v0) × (v2 − v0). `None` if the point is not on the side `normal` points to.
+    #[inline]
+    pub fn new(v: [&Sight; 3], [g01, g02, g12]: [f32; 3], normal: Vec3A) -> Option<Self> {
+        // Six times the volume of the tetrahedron; positive in front. Taken from the nearest
+        // corner, where the height above the plane is rounded least.
+        let [d0, d1, d2] = [v[0].distance, v[1].distance, v[2].distance];
+        let nearest = if d0 <= d1.min(d2) {
+            v[0].to
+        } else if d1 <= d2 {
+            v[1].to
+        } else {
+            v[2].to
+        };
+        let y = -nearest.dot(normal) / d0 / d1 / d2;
+        let x = g01 + g02 + g12 - 2.0;
+        (y > 0.0).then_some(Self { x, y })
+    }
+
+    /// Of this triangle and another of the same plane. Together they see at most 2π, where rounding
+    /// may take y to the other side of 0.
+    #[inline]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            x: self.x * other.x - self.y * other.y,
+            y: (self.x * other.y + self.y * other.x).max(0.0),
+        }
+    }
+
+    /// The solid angle in sr; `None` where it is less than `f32` can work with.
+    #[inline]
+    pub fn solid_angle(self) -> Option<f32> {
+        let solid_angle = 2.0 * self.y.atan2(self.x);
+        (solid_angle >= MIN_SOLID_ANGLE).then_some(solid_angle)
+    }
+}
+
 /// A triangle seen from a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SphericalTriangle {
@@ -28,34 +99,12 @@ pub(super) struct SphericalTriangle {
 }
 
 impl SphericalTriangle {
-    /// The triangle of `corners` as seen from `p`; `normal` is (v1 − v0) × (v2 − v0). `None` if
-    /// `p` is not on the side `normal` points to, or sees nothing that `f32` can hold.
-    pub fn new(corners: &[Vec3A; 3], normal: Vec3A, p: Vec3A) -> Option<Self> {
-        let to = [corners[0] - p, corners[1] - p, corners[2] - p];
-        let distance = [to[0].length(), to[1].length(), to[2].length()];
-        // Six times the volume of the tetrahedron; positive in front. Taken from the nearest
-        // corner, where the height above the plane is rounded least.
-        let nearest = if distance[0] <= distance[1].min(distance[2]) {
-            to[0]
-        } else if distance[1] <= distance[2] {
-            to[1]
-        } else {
-            to[2]
-        };
-        let volume = -nearest.dot(normal);
-        let unit = [
-            to[0] / distance[0],
-            to[1] / distance[1],
-            to[2] / distance[2],
-        ];
-        let triple = volume / distance[0] / distance[1] / distance[2];
-        let g = |i: usize, j: usize| 0.5 * (unit[i] + unit[j]).length_squared();
-        let (g01, g02, g12) = (g(0, 1), g(0, 2), g(1, 2));
-        // van Oosterom and Strackee 1983, equation 8.
-        let solid_angle = 2.0 * triple.atan2(g01 + g02 + g12 - 2.0);
-        if !(triple > 0.0 && solid_angle >= MIN_SOLID_ANGLE) {
-            return None;
-        }
+    /// The triangle of the corners `v`, with arcs and normal as for [`HalfAngle::new`]. `None` if
+    /// the point is not in front, or sees nothing that `f32` can hold.
+    #[inline]
+    pub fn new(v: [&Sight; 3], arcs: [f32; 3], normal: Vec3A) -> Option<Self> {
+        let solid_angle = HalfAngle::new(v, arcs, normal)?.solid_angle()?;
+        let [g01, g02, g12] = arcs;
         // Corner 1 is the apex from which rays fan out over the side 02. An arc of nearly π at the
         // apex would let all of the fan start at its end: make such an arc the side.
         let order = if g02 <= g01.min(g12) || g01.min(g12) > LONG_ARC {
@@ -72,7 +121,7 @@ impl SphericalTriangle {
         };
         Some(Self {
             order,
-            distance: [distance[order[0]], distance[order[1]], distance[order[2]]],
+            distance: order.map(|corner| v[corner].distance),
             g: [
                 pair(order[0], order[1]),
                 pair(order[0], order[2]),

@@ -1,12 +1,12 @@
 //! Flat area lights: a triangle, and two that share an edge.
 
-use std::f32::consts::PI;
+use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3A};
 
-use super::spherical_triangle::SphericalTriangle;
+use super::spherical_triangle::{HalfAngle, Sight, SphericalTriangle};
 use super::{EmissionSample, LightSample};
-use crate::engine::geometry::{Ray, inset, offset_origin};
+use crate::engine::geometry::{NO_TRIANGLE, Ray, inset, offset_origin};
 use crate::engine::math::float::{ONE_MINUS_EPSILON, gamma};
 use crate::engine::math::{Frame, Rgb};
 use crate::engine::sampling::warp::{
@@ -25,6 +25,8 @@ pub struct TriangleLight {
     pub area: f32,
     /// Emitted radiance.
     pub radiance: Rgb,
+    /// Which triangle of the geometry it is.
+    prim: u32,
 }
 
 impl TriangleLight {
@@ -33,9 +35,9 @@ impl TriangleLight {
         (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0
     }
 
-    /// A light on the side from which `corners` run counter-clockwise. `None` for a triangle
-    /// whose area is 0 or beyond the range of `f32`.
-    pub fn new(corners: [Vec3A; 3], radiance: Rgb) -> Option<Self> {
+    /// Triangle `prim`, a light on the side from which `corners` run counter-clockwise. `None` where
+    /// the area is 0 or beyond the range of `f32`.
+    pub fn new(prim: u32, corners: [Vec3A; 3], radiance: Rgb) -> Option<Self> {
         let v = corners.map(|v| v.as_dvec3());
         let cross = (v[1] - v[0]).cross(v[2] - v[0]);
         let area = (0.5 * cross.length()) as f32;
@@ -45,6 +47,7 @@ impl TriangleLight {
             n: cross.try_normalize()?.as_vec3a(),
             area,
             radiance,
+            prim,
         };
         (area.is_normal() && light.cross.is_finite()).then_some(light)
     }
@@ -61,8 +64,12 @@ impl TriangleLight {
         (p, gamma(6) * magnitude)
     }
 
+    #[inline]
     fn seen_from(&self, p: Vec3A) -> Option<SphericalTriangle> {
-        SphericalTriangle::new(&self.corners, self.cross, p)
+        let [a, b, c] = self.corners;
+        let [v0, v1, v2] = &[Sight::new(a, p), Sight::new(b, p), Sight::new(c, p)];
+        let arcs = [v0.arc(v1), v0.arc(v2), v1.arc(v2)];
+        SphericalTriangle::new([v0, v1, v2], arcs, self.cross)
     }
 
     /// The point with barycentric coordinates `b`, seen from `p`.
@@ -81,6 +88,7 @@ impl TriangleLight {
             radiance: self.radiance,
             pdf_dir,
             is_delta: false,
+            prim: self.prim,
         })
     }
 
@@ -105,7 +113,9 @@ impl TriangleLight {
         let [v0, v1, v2] = self.corners.map(|v| v.as_dvec3());
         let edges = [v1 - v0, v2 - v0, self.cross.as_dvec3()];
         let p = inset(p.as_dvec3(), b.map(f64::from), edges, p_error).as_vec3a();
-        emit_from_surface(p, p_error, self.n, self.area, self.radiance, u_dir)
+        let mut emission = emit_from_surface(p, p_error, self.n, self.area, self.radiance, u_dir);
+        emission.ray.clear_of = [self.prim, NO_TRIANGLE];
+        emission
     }
 
     /// π · area · radiance.
@@ -143,15 +153,29 @@ pub(super) fn emit_from_surface(
 #[derive(Clone, Copy, Debug)]
 pub struct QuadLight {
     /// Both begin their corners (v0, v1, v2) so that v1 is the same point, from which the rays of
-    /// the sampling fan out.
+    /// the sampling fan out; v2 of the first is v0 of the second.
     halves: [TriangleLight; 2],
 }
 
-/// Not by `map` over the halves, which is not inlined.
-#[inline]
-fn solid_angles([first, second]: &[Option<SphericalTriangle>; 2]) -> [f32; 2] {
-    let of = |half: &Option<SphericalTriangle>| half.as_ref().map_or(0.0, |s| s.solid_angle);
-    [of(first), of(second)]
+/// The corners of both halves of a quadrangle seen from a point, and 1 + cos of the arcs 01, 02
+/// and 12 of each.
+struct QuadSights {
+    /// v0, v1 and v2 of the first, v2 of the second.
+    corners: [Sight; 4],
+    arcs: [[f32; 3]; 2],
+}
+
+impl QuadSights {
+    /// The corners of half 0 or 1.
+    #[inline]
+    fn half(&self, half: usize) -> [&Sight; 3] {
+        let [v0, apex, shared, last] = &self.corners;
+        if half == 0 {
+            [v0, apex, shared]
+        } else {
+            [shared, apex, last]
+        }
+    }
 }
 
 impl QuadLight {
@@ -185,7 +209,7 @@ impl QuadLight {
         }
         let turned = |t: &TriangleLight, apex: usize| {
             let at = |k: usize| t.corners[(apex + k) % 3];
-            TriangleLight::new([at(2), at(0), at(1)], t.radiance)
+            TriangleLight::new(t.prim, [at(2), at(0), at(1)], t.radiance)
         };
         // Around the apex the order is: far corner of one, shared corner, far corner of the other.
         Some(Self {
@@ -193,32 +217,56 @@ impl QuadLight {
         })
     }
 
-    fn seen_from(&self, p: Vec3A) -> [Option<SphericalTriangle>; 2] {
-        [self.halves[0].seen_from(p), self.halves[1].seen_from(p)]
+    #[inline]
+    fn seen_from(&self, p: Vec3A) -> QuadSights {
+        let [[v0, apex, shared], [_, _, last]] = [self.halves[0].corners, self.halves[1].corners];
+        let (v0, apex) = (Sight::new(v0, p), Sight::new(apex, p));
+        let (shared, last) = (Sight::new(shared, p), Sight::new(last, p));
+        let spoke = apex.arc(&shared);
+        QuadSights {
+            arcs: [
+                [v0.arc(&apex), v0.arc(&shared), spoke],
+                [spoke, shared.arc(&last), apex.arc(&last)],
+            ],
+            corners: [v0, apex, shared, last],
+        }
     }
 
     /// See [`super::Light::sample_li`]: uniform over the solid angle.
     #[inline]
     pub fn sample_li(&self, p: Vec3A, u: Vec2) -> Option<LightSample> {
-        let seen = self.seen_from(p);
-        let omega = solid_angles(&seen);
-        let total = omega[0] + omega[1];
+        let sights = self.seen_from(p);
+        let of =
+            |i: usize| SphericalTriangle::new(sights.half(i), sights.arcs[i], self.halves[i].cross);
+        let (first, second) = (of(0), of(1));
+        // Not by `map` over the halves, which is not inlined.
+        let omega = |half: &Option<SphericalTriangle>| half.as_ref().map_or(0.0, |s| s.solid_angle);
+        let (omega0, omega1) = (omega(&first), omega(&second));
+        let total = omega0 + omega1;
         let x = u.x * total;
-        let (half, u_x) = if x < omega[0] {
-            (0, x / omega[0])
+        let (half, seen, u_x) = if x < omega0 {
+            (&self.halves[0], first?, x / omega0)
         } else {
-            (1, (x - omega[0]) / omega[1])
+            (&self.halves[1], second?, (x - omega0) / omega1)
         };
         let u = Vec2::new(u_x.min(ONE_MINUS_EPSILON), u.y);
-        self.halves[half].light_sample(p, seen[half]?.sample(u)?, 1.0 / total)
+        // No more than half of all directions, whatever rounding makes of both at the lamp itself.
+        half.light_sample(p, seen.sample(u)?, 1.0 / total.min(TAU))
     }
 
     /// See [`super::Light::pdf_li`].
     #[inline]
     pub fn pdf_li(&self, p: Vec3A) -> f32 {
-        let omega = solid_angles(&self.seen_from(p));
-        let total = omega[0] + omega[1];
-        if total > 0.0 { 1.0 / total } else { 0.0 }
+        let sights = self.seen_from(p);
+        let of = |i: usize| HalfAngle::new(sights.half(i), sights.arcs[i], self.halves[i].cross);
+        let both = match (of(0), of(1)) {
+            (Some(first), Some(second)) => first.plus(second),
+            (first, second) => match first.or(second) {
+                Some(one) => one,
+                None => return 0.0,
+            },
+        };
+        both.solid_angle().map_or(0.0, |omega| 1.0 / omega)
     }
 
     /// See [`super::Light::sample_le`]: uniform by area, directions by the cosine.
@@ -252,5 +300,56 @@ impl QuadLight {
     /// π · area · radiance.
     pub fn power(&self) -> Rgb {
         self.radiance() * (PI * self.area())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::math::hash::{mix64, unit_f32};
+    use crate::engine::sampling::warp::sample_sphere;
+
+    /// A lamp of the half width `size` around `center`, whose front looks along the normal of
+    /// `frame`.
+    fn lamp(frame: &Frame, center: Vec3A, size: f32) -> Option<QuadLight> {
+        let at = |x: f32, y: f32| center + (frame.s * x + frame.t * y) * size;
+        let [a, b, c, d] = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
+        let half = |prim, corners| TriangleLight::new(prim, corners, Rgb::WHITE);
+        QuadLight::new(&half(0, [a, b, c])?, &half(1, [a, c, d])?)
+    }
+
+    /// At the lamp both halves see about π, and the half angles sum to π but for rounding.
+    #[test]
+    fn a_quadrangle_is_sampled_with_the_density_that_it_says() {
+        let mut key = 0;
+        let mut number = || {
+            key += 1;
+            unit_f32(mix64(key))
+        };
+        let (mut seen, mut wide) = (0, 0);
+        for (offset, size) in [(0.0, 1.0), (10.0, 1.0), (1000.0, 0.05), (0.0, 1e-4)] {
+            for _ in 0..40_000 {
+                let frame = Frame::from_normal(sample_sphere(Vec2::new(number(), number())));
+                let Some(lamp) = lamp(&frame, Vec3A::splat(offset), size) else {
+                    continue; // rounding has bent it
+                };
+                let height = size * 10.0_f32.powf(2.0 - 8.0 * number());
+                let aside = Vec2::new(number(), number()) * 2.0 - 1.0;
+                let p = Vec3A::splat(offset)
+                    + (frame.s * aside.x + frame.t * aside.y) * size
+                    + frame.n * height;
+                let Some(sample) = lamp.sample_li(p, Vec2::new(number(), number())) else {
+                    continue;
+                };
+                let ratio = lamp.pdf_li(p) / sample.pdf_dir;
+                assert!(
+                    (ratio - 1.0).abs() < 3e-6,
+                    "{ratio} at {height} over {size}"
+                );
+                seen += 1;
+                wide += usize::from(sample.pdf_dir * PI < 0.51);
+            }
+        }
+        assert!(seen > 100_000 && wide > 10_000, "{seen} {wide}");
     }
 }

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::projection::ProjectionMap;
-use crate::engine::geometry::{Ray, offset_origin};
+use crate::engine::geometry::Ray;
 use crate::engine::light::{EmissionSample, Light};
 use crate::engine::math::Rgb;
 use crate::engine::math::distribution::Discrete;
@@ -78,11 +78,7 @@ fn leave(
     u_group: f32,
     u_dir: glam::Vec2,
 ) -> Option<Emitted> {
-    let o = match sample.n {
-        Some(n) => offset_origin(sample.p, sample.p_error, n, n),
-        None => sample.p,
-    };
-    let (d, pdf) = map.sample_from(o, u_group, u_dir)?;
+    let (d, pdf) = map.sample_from(sample.ray.o, u_group, u_dir)?;
     let cos = sample.n.map_or(1.0, |n| n.dot(d).max(0.0));
     let radiance = match light {
         Light::Spot(spot) => spot.intensity(d),
@@ -90,7 +86,7 @@ fn leave(
     };
     let flux = radiance * (cos / pdf) / sample.pdf_pos;
     Some(Emitted {
-        ray: Ray::new(o, d),
+        ray: Ray { d, ..sample.ray },
         flux,
     })
 }

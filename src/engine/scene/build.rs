@@ -55,6 +55,9 @@ impl Scene {
         }
         warnings.extend(super::limits::warnings(desc, &lights));
         let features = features(desc, &materials, &lights, &media);
+        if !features.textures {
+            geometry.without_textures();
+        }
         if !features.hittable_lights && !features.zero_size_lights && !features.shining_media {
             warnings.push("nothing in this scene emits light, so the picture is black".to_owned());
         }

@@ -181,9 +181,12 @@ impl Scene {
                 return transmittance;
             };
             self.media.cross(&mut inside, &si, ray.d);
-            let t_max = ray.t_max - si.t;
-            ray = si.spawn_ray(ray.d);
-            ray.t_max = t_max;
+            let (t_max, [_, end]) = (ray.t_max - si.t, ray.clear_of);
+            ray = Ray {
+                t_max,
+                clear_of: [si.prim, end],
+                ..si.spawn_ray(ray.d)
+            };
         }
         Rgb::BLACK
     }

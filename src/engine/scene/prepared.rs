@@ -88,12 +88,7 @@ impl Scene {
     /// between only where surfaces have an opacity.
     #[inline]
     pub fn transmittance(&self, si: &SurfaceInteraction, light: &LightSample) -> f32 {
-        let ray = if light.distance.is_finite() {
-            si.spawn_ray_to(light.target)
-        } else {
-            si.spawn_ray(light.wi)
-        };
-        self.transmittance_along(ray)
+        self.transmittance_along(light.ray_from(si))
     }
 
     /// The share of light that gets through along `ray`, up to its end.
@@ -116,9 +111,12 @@ impl Scene {
             if transmittance == 0.0 {
                 return 0.0;
             }
-            let t_max = ray.t_max - si.t;
-            ray = si.spawn_ray(ray.d);
-            ray.t_max = t_max;
+            let (t_max, [_, end]) = (ray.t_max - si.t, ray.clear_of);
+            ray = Ray {
+                t_max,
+                clear_of: [si.prim, end],
+                ..si.spawn_ray(ray.d)
+            };
         }
         0.0
     }

@@ -334,11 +334,7 @@ impl<'a, S: Sampler, G: Gather, O: RadianceSink> VolumeWalk<'a, S, G, O> {
                 continue;
             }
             let visible = *visibility.get_or_insert_with(|| {
-                let ray = if light.distance.is_finite() {
-                    si.spawn_ray_to(light.target)
-                } else {
-                    si.spawn_ray(light.wi)
-                };
+                let ray = light.ray_from(si);
                 let inside = cx.scene.beyond(inside, si, light.wi);
                 cx.scene.transmittance_in_media(ray, inside, shadow)
             });

@@ -304,7 +304,7 @@ fn twins(second: &[[u32; 3]; 2], trials: u64) -> [u64; 2] {
         not_first += u64::from(at.material != 0);
         let d = frame.to_world(sample_cosine_hemisphere(s.next_2d()));
         for d in [d, -d] {
-            met_again += u64::from(both.intersect(&at.spawn_ray(d)).is_some());
+            met_again += u64::from(both.intersect(&at.spawn_ray(d).against_all()).is_some());
         }
     }
     [not_first, met_again]
@@ -335,7 +335,7 @@ fn shell(ulps: f32, trials: u64) -> (u64, u64) {
         let at = alone.interaction(&ray, &hit);
         let d = frame.to_world(sample_cosine_hemisphere(s.next_2d()));
         for d in [d, -d] {
-            own += u64::from(alone.intersect(&at.spawn_ray(d)).is_some());
+            own += u64::from(alone.intersect(&at.spawn_ray(d).against_all()).is_some());
         }
         leaked += u64::from(both.intersect(&at.spawn_ray(n)).is_none());
     }
