@@ -278,9 +278,14 @@ impl Camera {
     /// that shows.
     #[inline]
     pub fn pdf_of_generated(&self, ray: &Ray) -> (f32, f32) {
-        let cos = ray.d.dot(self.forward);
-        let pdf_dir = 1.0 / (self.film_area() * cos * cos * cos);
-        (1.0 / self.lens_area(), pdf_dir)
+        (1.0 / self.lens_area(), self.pdf_dir(ray.d))
+    }
+
+    /// Density in 1/sr of the unit direction `d` of a ray that is on the film.
+    #[inline]
+    pub fn pdf_dir(&self, d: Vec3A) -> f32 {
+        let cos = d.dot(self.forward);
+        1.0 / (self.film_area() * cos * cos * cos)
     }
 
     /// Samples the lens as seen from `p`; `None` if `p` is not in the picture.

@@ -70,6 +70,9 @@ pub struct Bsdf {
     n_s: Vec3A,
     /// Bit mask of the letters of `lobes`.
     letters: u8,
+    /// What most surfaces are: one Lambert lobe, and one normal. Nothing is to be chosen there, and
+    /// every factor between the normals is 1.
+    plain: bool,
     lobes: ArrayVec<Weighted, MAX_LOBES>,
 }
 
@@ -81,6 +84,7 @@ impl Bsdf {
             n_g: si.n_g,
             n_s: si.n_s,
             letters: 0,
+            plain: false,
             lobes: ArrayVec::new_const(),
         }
     }
@@ -88,7 +92,8 @@ impl Bsdf {
     /// Makes it a black surface at `si`, in the same place of memory.
     #[inline]
     pub fn reset(&mut self, si: &SurfaceInteraction) {
-        (self.n_g, self.n_s, self.letters) = (si.n_g, si.n_s, 0);
+        (self.n_g, self.n_s) = (si.n_g, si.n_s);
+        (self.letters, self.plain) = (0, false);
         self.lobes.clear();
     }
 
@@ -101,6 +106,7 @@ impl Bsdf {
         debug_assert!(weight.is_finite(), "weight {weight:?} of {lobe:?}");
         if !weight.is_black() {
             self.letters |= bit(lobe.letter());
+            self.plain = self.lobes.is_empty() && lobe == Lobe::Lambert && self.n_g == self.n_s;
             self.lobes.push(Weighted { weight, lobe });
         }
     }
@@ -267,14 +273,10 @@ impl Bsdf {
         }
     }
 
-    /// The weight of what most surfaces have: one Lambert lobe, and one normal. Nothing is to be
-    /// chosen there, and every factor between the normals is 1.
+    /// The weight of the only lobe, if the surface is plain.
     #[inline]
     fn plain(&self) -> Option<Rgb> {
-        match &self.lobes[..] {
-            [only] if only.lobe == Lobe::Lambert && self.n_g == self.n_s => Some(only.weight),
-            _ => None,
-        }
+        self.plain.then(|| self.lobes[0].weight)
     }
 
     /// Before the factor of the adjoint. Apart from what is inlined for plain surfaces.

@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::ends::{LightEnd, area_density, areas};
+use super::ends::{LARGEST_INVERSE, LightEnd, Span, cosine};
 use super::merge::PhotonGrid;
 use super::strategies::Strategies;
 use super::subpath::{Escape, LightStart, Subpath};
@@ -14,7 +14,7 @@ use super::weight::{Density, Join, Meeting, weight};
 use crate::engine::bsdf::{Evaluation, Transport};
 use crate::engine::camera::CameraSample;
 use crate::engine::event::{Event, Letter};
-use crate::engine::geometry::{Ray, offset_origin};
+use crate::engine::geometry::Ray;
 use crate::engine::integrators::{Pass, RenderStats};
 use crate::engine::light::LightSample;
 use crate::engine::math::Rgb;
@@ -206,13 +206,7 @@ impl<K: Sink> Connector<'_, K> {
                 continue;
             }
             let from = |scene: &Scene| (v.leaving(scene, wi), combine(v.key, 1));
-            let visible = self.visible(&mut visibility, from, || {
-                if sample.distance.is_finite() {
-                    v.si.spawn_ray_to(sample.target)
-                } else {
-                    v.si.spawn_ray(wi)
-                }
-            });
+            let visible = self.visible(&mut visibility, from, || sample.ray_from(&v.si));
             if visible.is_black() {
                 return;
             }
@@ -250,14 +244,14 @@ impl<K: Sink> Connector<'_, K> {
         }
         let (light, start) = from;
         let (y, z) = (light.vertex(s - 1), eye.vertex(t - 1));
-        let to = y.si.p - z.si.p;
-        let distance2 = to.length_squared();
+        let distance2 = (y.si.p - z.si.p).length_squared();
         if distance2 == 0.0 {
             return; // one point twice: its directions to itself have no measure
         }
-        let wi = to / distance2.sqrt();
+        let span = Span::new(&z.si, &y.si);
+        let wi = span.direction;
         let throughput = z.throughput * y.throughput * (1.0 / distance2);
-        let (to_light, to_eye) = areas(&y.si, &z.si);
+        let (to_eye, to_light) = span.areas(&z.si, &y.si);
         let plan = self.cx.plan;
         let mut visibility = None;
         for event in z.non_delta_events() {
@@ -354,7 +348,7 @@ impl<K: Sink> Connector<'_, K> {
             return;
         };
         let importance = y.throughput * (sample.importance / sample.pdf_dir);
-        let seen = area_density(self.lens_pdf(&sample), sample.target, &y.si);
+        let seen = self.drawn_by_lens(&sample, cosine(&y.si, sample.wi));
         let mut visibility = None;
         for event in y.non_delta_events() {
             let class = self.cx.plan.classes.append(y.class, event.letter());
@@ -403,16 +397,18 @@ impl<K: Sink> Connector<'_, K> {
         if cos <= 0.0 || !self.cx.plan.is_wanted(ClassId::EMPTY) {
             return;
         }
-        let origin = offset_origin(emission.p, emission.p_error, n, sample.wi);
         let from = |_: &Scene| (start.inside, start.key);
-        let ray = || Ray::between(origin, sample.target);
+        let ray = || Ray {
+            clear_of: emission.ray.clear_of,
+            ..Ray::between(emission.ray.o, sample.target)
+        };
         let visible = self.visible(&mut None, from, ray);
         let flux = emission.radiance * (cos / (start.pmf * emission.pdf_pos));
         let value = flux * (sample.importance / sample.pdf_dir) * visible;
         if value.is_black() {
             return;
         }
-        let seen = self.lens_pdf(&sample) * (cos / sample.distance) / sample.distance;
+        let seen = self.drawn_by_lens(&sample, cos);
         let join = Join {
             diffuse: [false; 2],
             meeting: Meeting::Connection,
@@ -430,9 +426,11 @@ impl<K: Sink> Connector<'_, K> {
             .splat(sample.film, technique, ClassId::EMPTY, value, weight);
     }
 
-    /// Density in 1/sr with which eye walks leave the lens in the direction against `sample`.
-    fn lens_pdf(&self, sample: &CameraSample) -> f32 {
-        let ray = Ray::new(sample.target, -sample.wi);
-        self.cx.camera.pdf_we(&ray).1
+    /// Density in 1/m² with which eye walks meet the point that `sample` joins to the lens, where
+    /// the surface has the cosine `cos`.
+    #[inline]
+    fn drawn_by_lens(&self, sample: &CameraSample, cos: f32) -> f32 {
+        let near = (1.0 / sample.distance).min(LARGEST_INVERSE);
+        self.cx.camera.pdf_dir(-sample.wi) * cos * (near * near)
     }
 }

@@ -7,7 +7,7 @@ use crate::engine::light::Light;
 
 /// Largest inverse of a distance whose square `f32` holds with room for densities of directions:
 /// where two points round to one, they keep a density.
-const LARGEST_INVERSE: f32 = 1e15;
+pub const LARGEST_INVERSE: f32 = 1e15;
 
 /// The direction of `to` and the inverse of its square; `otherwise`, where it has none.
 #[inline]
@@ -23,18 +23,38 @@ fn polar(to: Vec3A, otherwise: Vec3A) -> (Vec3A, f32) {
     (direction, near * near)
 }
 
-/// What turns densities of directions between two points, in 1/sr, into those of the points, in
-/// 1/m²: first that of `a`, seen from `b`, then that of `b`, seen from `a`. It is |cosθ| over the
-/// squared distance; places in a medium have no cosine. The density of distances is in none
-/// (CONTRACT rule 6): for places in a medium it is the same factor in all strategies, but for
-/// transmittance.
-#[inline]
-pub fn areas(a: &SurfaceInteraction, b: &SurfaceInteraction) -> (f32, f32) {
-    let (direction, inverse2) = polar(b.p - a.p, b.wo);
-    (
-        cosine(a, direction) * inverse2,
-        cosine(b, direction) * inverse2,
-    )
+/// What lies between two points.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Unit direction from the first to the second.
+    pub direction: Vec3A,
+    /// One over their squared distance, 1/m².
+    pub inverse2: f32,
+}
+
+impl Span {
+    /// From `a` to `b`.
+    #[inline]
+    pub fn new(a: &SurfaceInteraction, b: &SurfaceInteraction) -> Self {
+        let (direction, inverse2) = polar(b.p - a.p, b.wo);
+        Self {
+            direction,
+            inverse2,
+        }
+    }
+
+    /// What turns densities of directions between two points, in 1/sr, into those of the points, in
+    /// 1/m²: first that of `a`, seen from `b`, then that of `b`, seen from `a`. It is |cosθ| over the
+    /// squared distance; places in a medium have no cosine. The density of distances is in none
+    /// (CONTRACT rule 6): for places in a medium it is the same factor in all strategies, but for
+    /// transmittance.
+    #[inline]
+    pub fn areas(&self, a: &SurfaceInteraction, b: &SurfaceInteraction) -> (f32, f32) {
+        (
+            cosine(a, self.direction) * self.inverse2,
+            cosine(b, self.direction) * self.inverse2,
+        )
+    }
 }
 
 /// Density in 1/m² of the point `si` if a walk at `from` draws the direction to it with the
@@ -47,7 +67,7 @@ pub fn area_density(pdf_dir: f32, from: Vec3A, si: &SurfaceInteraction) -> f32 {
 
 /// |cosθ| of the unit direction `d`; 1 in a medium.
 #[inline]
-fn cosine(si: &SurfaceInteraction, d: Vec3A) -> f32 {
+pub fn cosine(si: &SurfaceInteraction, d: Vec3A) -> f32 {
     if si.is_in_volume() {
         1.0
     } else {

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::ends::{LightEnd, area_density, areas};
+use super::ends::{LightEnd, Span, area_density};
 use super::vertex::Vertex;
 use super::weight::Density;
 use crate::engine::bsdf::{BsdfSample, Transport};
@@ -225,7 +225,12 @@ impl Walker<'_> {
         let lights = &self.cx.scene.lights;
         sampler.seek(0);
         let (u_pos, u_dir) = (sampler.next_2d(), sampler.next_2d());
-        let (id, pmf) = lights.sample(sampler.next_1d())?;
+        let choice = if lights.are_several() {
+            sampler.next_1d()
+        } else {
+            0.0
+        };
+        let (id, pmf) = lights.sample(choice)?;
         let light = lights.get(id);
         let emission = light.sample_le(u_pos, u_dir)?;
         let le = (emission.pdf_pos, emission.pdf_dir);
@@ -385,7 +390,7 @@ impl Walker<'_> {
         let si = &met.si;
         let (own, back) = match (path.last(), origin) {
             (Some(last), _) => {
-                let (back, ahead) = areas(&last.si, si);
+                let (back, ahead) = Span::new(&last.si, si).areas(&last.si, si);
                 (flight.pdf_dir * ahead, back)
             }
             (None, Origin::Lens(p)) => (area_density(flight.pdf_dir, p, si), 0.0),
