@@ -57,8 +57,7 @@ impl Sphere {
         let r = f64::from(self.radius);
         let a = d.length_squared();
         let discriminant = r * r * a - o.cross(d).length_squared();
-        // Not so for NaN.
-        if !(discriminant >= 0.0) {
+        if discriminant.is_nan() || discriminant < 0.0 {
             return None;
         }
         // One root by the sum that does not cancel, the other by Vieta.
